@@ -219,6 +219,15 @@ std::optional<FoundBuffer> FrameGraph::find_buffer(std::string_view name) const 
     return FoundBuffer{{found}, resource.storage->buffer.stride, note_of(*declared_, resource)};
 }
 
+std::vector<std::string_view> FrameGraph::pass_names() const {
+    std::vector<std::string_view> names;
+    names.reserve(declared_->passes.size());
+    for (const detail::PassNode& pass : declared_->passes) {
+        names.push_back(pass.name);
+    }
+    return names;
+}
+
 std::optional<TextureDesc> FrameGraph::desc(TextureHandle texture) const {
     if (!declared_->owns(texture, ResourceKind::texture)) return std::nullopt;
     return declared_->resources[texture.resource].storage->texture;

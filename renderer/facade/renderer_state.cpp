@@ -5,6 +5,9 @@
 #include <chrono>
 #include <cmath>
 #include <filesystem>
+#include <functional>
+#include <set>
+#include <string>
 #include <utility>
 
 #include <glm/geometric.hpp>
@@ -71,6 +74,14 @@ bool has_material(const RenderView& view) {
 }
 
 /// Throws SceneError. `index`: of the receiver.
+std::set<std::string, std::less<>> host_passes(const FrameHandles& frame) {
+    std::set<std::string, std::less<>> names;
+    for (const ViewHandles& view : frame.views) {
+        names.insert(view.host_passes.begin(), view.host_passes.end());
+    }
+    return names;
+}
+
 void require_possible(const Receiver& receiver, std::size_t index) {
     constexpr float rounding = 1e-3F;  // of normals that a host has stored with 10 bits or more
     const glm::vec3 position = receiver.position;
@@ -149,6 +160,7 @@ void Renderer::State::switch_to(const Configuration& configuration, const FrameS
     runtime_.switch_to(compile(std::move(graph)).take());
     frame_ = std::move(frame);
     if (shape != shape_ || !same_radiance(configuration, configuration_)) ++refinement_clock_.epoch;
+    backend_.set_host_passes(host_passes(frame_));
     configuration_ = configuration;
     shape_ = shape;
     extensions_ = std::move(extensions);

@@ -2,6 +2,7 @@
 
 #include <optional>
 #include <span>
+#include <string>
 #include <vector>
 
 #include <candela/configuration.hpp>
@@ -36,6 +37,7 @@ struct ViewHandles {
     std::optional<LightLists> lists;         ///< none if every surface evaluates all lights
     std::optional<VplErrorSamples> samples;  ///< none without VPLs, or if nobody asked for the error
     ViewFrame parts;                         ///< what is kept, as far as it was asked for
+    std::vector<std::string> host_passes;    ///< names of the passes of extensions
 };
 
 /// Handles into the frame graph, of all views.

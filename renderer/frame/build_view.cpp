@@ -2,8 +2,10 @@
 
 #include <algorithm>
 #include <array>
+#include <cstddef>
 #include <string>
 #include <string_view>
+#include <vector>
 
 #include <fmt/format.h>
 
@@ -183,12 +185,18 @@ void require_alike(const FrameGraph& graph, const Extension& extension, const Vi
     }
 }
 
-void extend(FrameGraph& graph, const SharedFrame& shared, ExtensionPlace place, ViewFrame& parts) {
+/// Adds the passes of the extensions at this place; appends their names to `out`.
+void extend(FrameGraph& graph, const SharedFrame& shared, ExtensionPlace place, ViewFrame& parts,
+            ViewHandles& out) {
     for (const Extension& extension : shared.extensions) {
         if (extension.place != place) continue;
         const ViewFrame given = parts;
+        const std::size_t others = graph.pass_names().size();
         extension.declare(graph, parts);
         require_alike(graph, extension, given, parts);
+        const std::vector<std::string_view> names = graph.pass_names();
+        out.host_passes.insert(out.host_passes.end(), names.begin() + static_cast<std::ptrdiff_t>(others),
+                               names.end());
     }
 }
 
@@ -327,7 +335,7 @@ void build_view(FrameGraph& graph, Gpu& gpu, const SharedFrame& shared, const Vi
         out.host ? add_host_surfaces(graph, gpu, *out.host, view, shaded_parts(shared, out).glossy)
                  : find_surfaces(graph, gpu, shared, seen, view, out, asked);
     ViewFrame parts = first_parts(shared, index, view, found);
-    extend(graph, shared, ExtensionPlace::after_surfaces, parts);
+    extend(graph, shared, ExtensionPlace::after_surfaces, parts, out);
 
     const bool bounds_lists = out.host || path.surfaces != SurfaceStage::forward;
     out.lists =
@@ -355,7 +363,7 @@ void build_view(FrameGraph& graph, Gpu& gpu, const SharedFrame& shared, const Vi
     }
     if (mirrors) add_mirrored(graph, gpu, shared, view, out, sky_picture, parts);
     if (!out.host) add_sources(graph, gpu, shared, seen, view, sky_picture, parts);
-    extend(graph, shared, ExtensionPlace::after_shading, parts);
+    extend(graph, shared, ExtensionPlace::after_shading, parts, out);
     if (!out.host) {
         const Lighting lighting = lighting_of_blended(graph, gpu, shared, out);
         parts.radiance =
@@ -363,7 +371,7 @@ void build_view(FrameGraph& graph, Gpu& gpu, const SharedFrame& shared, const Vi
                             {.emission = shows_emitters(shared), .glass = shared.contents.glass});
     }
     if (out.averaged) parts.radiance = add_accumulate(graph, gpu, *parts.radiance, *out.averaged, view.size);
-    extend(graph, shared, ExtensionPlace::before_tone_map, parts);
+    extend(graph, shared, ExtensionPlace::before_tone_map, parts, out);
     add_tone_map(graph, gpu, *parts.radiance, out.target, out.picture, display_of(configuration));
     out.parts = parts;
 }

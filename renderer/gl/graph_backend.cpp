@@ -6,6 +6,8 @@
 #include <span>
 #include <utility>
 
+#include "renderer/gl/host_state.hpp"
+
 namespace candela::gl {
 namespace {
 
@@ -72,6 +74,7 @@ void GraphBackend::barrier(Barrier bits) {
 
 void GraphBackend::begin_pass(std::string_view name, std::uint32_t index, const PassTargets* targets) {
     const Functions& gl = device_->gl();
+    targets_ = nullptr;
     if (targets != nullptr) bind_targets(*targets);
     // The host may have used up the stack.
     GLint depth = 0;
@@ -80,6 +83,7 @@ void GraphBackend::begin_pass(std::string_view name, std::uint32_t index, const 
     if (in_debug_group_) {
         gl.PushDebugGroup(GL_DEBUG_SOURCE_APPLICATION, index, static_cast<GLsizei>(name.size()), name.data());
     }
+    in_host_pass_ = host_passes_.contains(name);
     timer_.begin_pass(index);
     device_->reset_raster_state();
 }
@@ -87,6 +91,9 @@ void GraphBackend::begin_pass(std::string_view name, std::uint32_t index, const 
 void GraphBackend::end_pass() {
     timer_.end_pass();
     if (in_debug_group_) device_->gl().PopDebugGroup();
+    if (!in_host_pass_) return;
+    set_assumed_state(device_->gl());
+    if (targets_ != nullptr) targets_->draw_buffers(drawn_colours_);
 }
 
 void GraphBackend::bind_texture(ObjectId texture, const TextureDesc& desc, Binding binding) {
@@ -141,7 +148,9 @@ void GraphBackend::bind_targets(const PassTargets& targets) {
         framebuffer.check();
         found = framebuffers_.emplace(std::move(key), std::move(framebuffer)).first;
     }
-    found->second.bind();
+    targets_ = &found->second;
+    drawn_colours_ = static_cast<std::uint32_t>(targets.colour.size());
+    targets_->bind();
     device_->gl().Viewport(0, 0, static_cast<GLsizei>(targets.size.x), static_cast<GLsizei>(targets.size.y));
 }
 

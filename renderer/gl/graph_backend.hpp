@@ -1,8 +1,13 @@
 #pragma once
 
+#include <cstdint>
+#include <functional>
 #include <map>
+#include <set>
+#include <string>
 #include <string_view>
 #include <unordered_map>
+#include <utility>
 #include <vector>
 
 #include <candela/graph/backend.hpp>
@@ -14,7 +19,8 @@
 namespace candela::gl {
 
 /// Implements the frame graph's back end in OpenGL. An ObjectId is the object's GL name. Before each pass it
-/// binds the pass's attachments, sets the viewport to their size, and sets the default RasterState.
+/// binds the pass's attachments, sets the viewport to their size, and sets the default RasterState. After
+/// passes of the host's, it sets the state that others assume.
 class GraphBackend final : public Backend {
  public:
     /// The device must outlive the back end.
@@ -33,6 +39,9 @@ class GraphBackend final : public Backend {
     std::uint64_t texture_digest(ObjectId texture) override;
     std::uint64_t buffer_digest(ObjectId buffer) override;
 
+    /// Names of the passes that the host has written, which may leave any state behind.
+    void set_host_passes(std::set<std::string, std::less<>> names) { host_passes_ = std::move(names); }
+
     /// GPU times of passes. The owner calls the timer's begin_frame and end_frame around each frame.
     [[nodiscard]] Timer& timer() { return timer_; }
 
@@ -49,9 +58,13 @@ class GraphBackend final : public Backend {
     Device* device_;
     Timer timer_;
     bool in_debug_group_ = false;  // the running pass has pushed its group
+    bool in_host_pass_ = false;
+    std::set<std::string, std::less<>> host_passes_;
     std::unordered_map<ObjectId, Texture> textures_;
     std::unordered_map<ObjectId, Buffer> buffers_;
     std::map<Attachments, Framebuffer> framebuffers_;
+    Framebuffer* targets_ = nullptr;  // of the running pass; null without attachments
+    std::uint32_t drawn_colours_ = 0;
 };
 
 /// The bits of glMemoryBarrier for a barrier of the frame graph.

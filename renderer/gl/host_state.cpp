@@ -67,8 +67,16 @@ void set_enabled_at(const Functions& gl, GLenum capability, GLuint index, bool e
     }
 }
 
-// Each of the following functions saves a part of the state, sets what rendering assumes, and returns what
-// restores the part.
+std::vector<GLenum> all_capabilities(const Functions& gl) {
+    std::vector<GLenum> all(capabilities.begin(), capabilities.end());
+    const GLuint clip_distances = get_unsigned(gl, GL_MAX_CLIP_DISTANCES);
+    for (GLuint i = 0; i < clip_distances; ++i) {
+        all.push_back(GL_CLIP_DISTANCE0 + i);
+    }
+    return all;
+}
+
+// Each of the following functions saves a part of the state, and returns what restores it.
 
 using Restore = std::function<void()>;
 
@@ -109,7 +117,6 @@ Restore save_texture_units(const Functions& gl) {
             units[i].textures[target] = get_unsigned(gl, texture_targets[target].binding);
         }
         units[i].sampler = get_unsigned(gl, GL_SAMPLER_BINDING);
-        gl.BindSampler(i, 0);
     }
     return [&gl, units, active] {
         for (GLuint i = 0; i < units.size(); ++i) {
@@ -188,8 +195,6 @@ Restore save_viewports(const Functions& gl) {
         gl.GetDoublei_v(GL_DEPTH_RANGE, i, viewports[i].depth_range.data());
         viewports[i].scissor_test = gl.IsEnabledi(GL_SCISSOR_TEST, i) == GL_TRUE;
     }
-    gl.DepthRangef(0.0F, 1.0F);
-    gl.Disable(GL_SCISSOR_TEST);
     return [&gl, viewports = std::move(viewports)] {
         for (GLuint i = 0; i < viewports.size(); ++i) {
             const Viewport& viewport = viewports[i];
@@ -219,8 +224,6 @@ Restore save_draw_buffers(const Functions& gl) {
             .mask = {}};
         gl.GetBooleani_v(GL_COLOR_WRITEMASK, i, buffers[i].mask.data());
     }
-    gl.Disable(GL_BLEND);
-    gl.ColorMask(GL_TRUE, GL_TRUE, GL_TRUE, GL_TRUE);
     return [&gl, buffers = std::move(buffers)] {
         for (GLuint i = 0; i < buffers.size(); ++i) {
             const auto& [blends, equation, factors, mask] = buffers[i];
@@ -233,15 +236,11 @@ Restore save_draw_buffers(const Functions& gl) {
 }
 
 Restore save_capabilities(const Functions& gl) {
-    std::vector<GLenum> all(capabilities.begin(), capabilities.end());
-    const GLuint clip_distances = get_unsigned(gl, GL_MAX_CLIP_DISTANCES);
-    for (GLuint i = 0; i < clip_distances; ++i) {
-        all.push_back(GL_CLIP_DISTANCE0 + i);
-    }
+    std::vector<GLenum> all = all_capabilities(gl);
     std::vector<bool> enabled;
+    enabled.reserve(all.size());
     for (const GLenum capability : all) {
         enabled.push_back(gl.IsEnabled(capability) == GL_TRUE);
-        gl.Disable(capability);
     }
     return [&gl, all = std::move(all), enabled = std::move(enabled)] {
         for (std::size_t i = 0; i < all.size(); ++i) {
@@ -256,23 +255,17 @@ Restore save_rasterisation(const Functions& gl) {
     gl.GetFloatv(GL_POLYGON_OFFSET_FACTOR, &offset[0]);
     gl.GetFloatv(GL_POLYGON_OFFSET_UNITS, &offset[1]);
     gl.GetIntegerv(GL_POLYGON_MODE, polygon_mode.data());
-    Restore restore =
-        [&gl, offset, mode = static_cast<GLenum>(polygon_mode[0]),
-         front_face = get_unsigned(gl, GL_FRONT_FACE), cull_face = get_unsigned(gl, GL_CULL_FACE_MODE),
-         clip_origin = get_unsigned(gl, GL_CLIP_ORIGIN), clip_depth = get_unsigned(gl, GL_CLIP_DEPTH_MODE),
-         provoking_vertex = get_unsigned(gl, GL_PROVOKING_VERTEX)] {
-            gl.PolygonOffset(offset[0], offset[1]);
-            gl.PolygonMode(GL_FRONT_AND_BACK, mode);
-            gl.FrontFace(front_face);
-            gl.CullFace(cull_face);
-            gl.ClipControl(clip_origin, clip_depth);
-            gl.ProvokingVertex(provoking_vertex);
-        };
-    gl.PolygonMode(GL_FRONT_AND_BACK, GL_FILL);
-    gl.CullFace(GL_BACK);
-    gl.ClipControl(GL_LOWER_LEFT, GL_ZERO_TO_ONE);
-    gl.ProvokingVertex(GL_LAST_VERTEX_CONVENTION);  // drivers may round interpolated values in another way
-    return restore;
+    return [&gl, offset, mode = static_cast<GLenum>(polygon_mode[0]),
+            front_face = get_unsigned(gl, GL_FRONT_FACE), cull_face = get_unsigned(gl, GL_CULL_FACE_MODE),
+            clip_origin = get_unsigned(gl, GL_CLIP_ORIGIN), clip_depth = get_unsigned(gl, GL_CLIP_DEPTH_MODE),
+            provoking_vertex = get_unsigned(gl, GL_PROVOKING_VERTEX)] {
+        gl.PolygonOffset(offset[0], offset[1]);
+        gl.PolygonMode(GL_FRONT_AND_BACK, mode);
+        gl.FrontFace(front_face);
+        gl.CullFace(cull_face);
+        gl.ClipControl(clip_origin, clip_depth);
+        gl.ProvokingVertex(provoking_vertex);
+    };
 }
 
 Restore save_depth_and_clears(const Functions& gl) {
@@ -292,6 +285,23 @@ Restore save_depth_and_clears(const Functions& gl) {
 
 }  // namespace
 
+void set_assumed_state(const Functions& gl) {
+    for (GLuint i = 0; i <= UNIT_LAST; ++i) {
+        gl.BindSampler(i, 0);
+    }
+    gl.DepthRangef(0.0F, 1.0F);
+    gl.Disable(GL_SCISSOR_TEST);
+    gl.Disable(GL_BLEND);
+    gl.ColorMask(GL_TRUE, GL_TRUE, GL_TRUE, GL_TRUE);
+    for (const GLenum capability : all_capabilities(gl)) {
+        gl.Disable(capability);
+    }
+    gl.PolygonMode(GL_FRONT_AND_BACK, GL_FILL);
+    gl.CullFace(GL_BACK);
+    gl.ClipControl(GL_LOWER_LEFT, GL_ZERO_TO_ONE);
+    gl.ProvokingVertex(GL_LAST_VERTEX_CONVENTION);  // drivers may round interpolated values in another way
+}
+
 HostState::HostState(const Functions& gl) {
     // While transform feedback runs, the program can be neither changed nor restored.
     Restore resume = pause_transform_feedback(gl);
@@ -306,6 +316,7 @@ HostState::HostState(const Functions& gl) {
                 save_rasterisation(gl),
                 save_depth_and_clears(gl),
                 std::move(resume)};
+    set_assumed_state(gl);
 }
 
 HostState::~HostState() {

@@ -7,6 +7,11 @@
 
 namespace candela::gl {
 
+/// Sets what all passes assume, which none of Candela's own changes: no capability that would change the
+/// picture is enabled, nothing is masked, clip-space depth is in [0, 1]. Raster state is another matter: see
+/// Device::reset_raster_state.
+void set_assumed_state(const Functions& gl);
+
 /// Saves the host's GL state and sets what rendering assumes. The destructor restores all state of OpenGL 4.5
 /// that rendering changes, of all draw buffers, viewports and binding points:
 ///

@@ -5,6 +5,9 @@
 #include <any>
 #include <optional>
 #include <string>
+#include <string_view>
+#include <utility>
+#include <vector>
 
 #include "tests/engine/graph_fixture.hpp"
 
@@ -49,6 +52,18 @@ TEST_CASE_FIXTURE(Find, "the description of a texture, by its handle") {
     FrameGraph other;
     CHECK_FALSE(graph.desc(other.texture("scene", colour)));
     CHECK_FALSE(graph.desc({graph.buffer<int>("numbers", 1)}));
+}
+
+TEST_CASE_FIXTURE(Find, "the names of the passes so far") {
+    CHECK(graph.pass_names().empty());
+    const TextureHandle drawn = draw("surfaces", {}, texture("scene"));
+    graph.append_to_names(" 2");
+    static_cast<void>(draw("sky", {}, drawn));
+    const std::vector<std::string_view> names = graph.pass_names();
+    CHECK(names == std::vector<std::string_view>{"surfaces", "sky 2"});
+    const CompileResult compiled = compile(std::move(graph));
+    REQUIRE(compiled.graph);
+    CHECK(names.back() == "sky 2");
 }
 
 TEST_CASE_FIXTURE(Find, "names have the endings of views; of equal names, the last is found") {

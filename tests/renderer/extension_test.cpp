@@ -10,6 +10,7 @@
 #include <optional>
 #include <stdexcept>
 #include <string>
+#include <utility>
 #include <vector>
 
 #include <candela/graph/execute.hpp>
@@ -349,6 +350,105 @@ TEST_CASE_FIXTURE(ExtensionTests,
                              "of 24x18 texels of rgba32f instead of 48x36 texels of rgba32f"));
     renderer.remove_extension("fixed");
     CHECK(frame() == usual);
+}
+
+TEST_CASE_FIXTURE(ExtensionTests, "the GL state that a pass of the host's leaves behind changes no picture") {
+    Material material = *diffuse(glm::vec3(0.2F, 0.9F, 0.4F));
+    material.alpha_mode = AlphaMode::blend;
+    material.base_colour.a = 0.5F;
+    add(scene.world, at({0, 1, 0}),
+        MeshInstance{square(0.3F, std::make_shared<const Material>(std::move(material)))});
+    const gl::Texture texture(device, "host's", {.size = {4, 4}, .format = Format::rgba32f});
+    const gl::Sampler sampler(device, "host's", {.min_filter = GL_NEAREST});
+    const gl::Buffer buffer(device, "host's", 256);
+    const gl::VertexArray vertices(device, "host's");
+    gl::Framebuffer framebuffer(device, "host's");
+    framebuffer.attach_colour(0, texture.name());
+    const auto disturb = [&] {
+        const gl::Functions& gl = device.gl();
+        gl.BindFramebuffer(GL_FRAMEBUFFER, framebuffer.name());
+        gl.UseProgram(0);
+        vertices.bind();
+        gl.Viewport(1, 1, 2, 2);
+        gl.Scissor(0, 0, 3, 3);
+        for (const int capability :
+             {GL_SCISSOR_TEST, GL_BLEND, GL_DEPTH_TEST, GL_CULL_FACE, GL_COLOR_LOGIC_OP,
+              GL_RASTERIZER_DISCARD, GL_STENCIL_TEST, GL_CLIP_DISTANCE0}) {
+            gl.Enable(static_cast<GLenum>(capability));
+        }
+        gl.ColorMask(GL_FALSE, GL_TRUE, GL_FALSE, GL_FALSE);
+        gl.DepthMask(GL_FALSE);
+        gl.DepthFunc(GL_NEVER);
+        gl.DepthRangef(0.5F, 0.6F);
+        gl.BlendFuncSeparate(GL_ONE, GL_ONE, GL_ZERO, GL_ONE);
+        gl.BlendEquation(GL_FUNC_REVERSE_SUBTRACT);
+        gl.CullFace(GL_FRONT_AND_BACK);
+        gl.FrontFace(GL_CW);
+        gl.PolygonMode(GL_FRONT_AND_BACK, GL_POINT);
+        gl.ClipControl(GL_UPPER_LEFT, GL_NEGATIVE_ONE_TO_ONE);
+        gl.ClearColor(1.0F, 0.5F, 0.25F, 0.0F);
+        gl.ClearDepthf(0.7F);
+        gl.PixelStorei(GL_UNPACK_ROW_LENGTH, 7);
+        gl.BindBuffer(GL_PIXEL_UNPACK_BUFFER, buffer.name());
+        gl.BindBuffer(GL_DRAW_INDIRECT_BUFFER, buffer.name());
+        for (GLuint unit = 0; unit < 16; ++unit) {
+            gl.BindTextureUnit(unit, texture.name());
+            sampler.bind(unit);
+        }
+        for (GLuint index = 0; index < 8; ++index) {
+            gl.BindBufferBase(GL_SHADER_STORAGE_BUFFER, index, buffer.name());
+            gl.BindBufferBase(GL_UNIFORM_BUFFER, index, buffer.name());
+            gl.BindImageTexture(index, texture.name(), 0, GL_FALSE, 0, GL_READ_WRITE, GL_RGBA32F);
+        }
+    };
+    Extension careless;
+    careless.declare = [&](FrameGraph& graph, ViewFrame& parts) {
+        graph.add("careless", [&](Pass& pass) {
+            pass.side_effect();
+            const bool has_target = parts.radiance.has_value();
+            if (has_target) parts.radiance = pass.write(*parts.radiance, Usage::colour_target);
+            pass.run([=, &disturb, this](Execution&) {
+                const GLenum nowhere = GL_NONE;
+                const GLuint bound = gl::get_unsigned(device.gl(), GL_DRAW_FRAMEBUFFER_BINDING);
+                if (has_target) device.gl().NamedFramebufferDrawBuffers(bound, 1, &nowhere);
+                disturb();
+            });
+        });
+    };
+    // All passes, into black targets.
+    const auto pictures = [&] {
+        const RenderTarget first(device, size);
+        const RenderTarget second(device, size);
+        const std::vector<RenderView> views{{.camera = scene.camera, .target = first.target()},
+                                            {.camera = scene.camera, .target = second.target()}};
+        renderer.invalidate();
+        renderer.render(scene.world, views);
+        return std::pair(first.read(), second.read());
+    };
+    for (const ShadingPath path :
+         {ShadingPath::deferred, ShadingPath::forward, ShadingPath::clustered_forward}) {
+        CAPTURE(to_string(path));
+        Configuration configuration = renderer.configuration();
+        configuration.path = path;
+        configuration.refinement.enabled = path == ShadingPath::deferred;  // one more pass with attachments
+        configure(configuration);
+        const auto usual = pictures();
+        CHECK(mean(usual.first) > 0.01);
+        CHECK(usual.second == usual.first);
+        for (const ExtensionPlace place : {ExtensionPlace::after_surfaces, ExtensionPlace::after_shading,
+                                           ExtensionPlace::before_tone_map}) {
+            CAPTURE(static_cast<int>(place));
+            careless.name = "careless";
+            careless.place = place;
+            REQUIRE(renderer.extend(careless).empty());
+            const auto disturbed = pictures();
+            CHECK(ran("careless"));
+            CHECK(ran("careless 2"));
+            CHECK(disturbed.first == usual.first);
+            CHECK(disturbed.second == usual.second);
+            renderer.remove_extension("careless");
+        }
+    }
 }
 
 TEST_CASE_FIXTURE(ExtensionTests,

@@ -72,8 +72,11 @@ struct ViewFrame {
 /// Passes of a host in the frames of a renderer. They are declared like Candela's own: they run only when
 /// what they read has changed, appear in Renderer::describe and in the times, and are verified. Objects are
 /// GL names (Execution::object). Before a pass runs, its attachments and bindings are bound, the viewport
-/// covers the attachments, and depth test, culling and blending are off. A pass may leave other programs,
-/// vertex arrays and bindings behind, but no capabilities, masks or pixel-store state.
+/// covers the attachments, and depth test, culling and blending are off. A pass may leave any state behind,
+/// such as the scissor test, blending, masks and bindings: the passes that follow set what they need. It must
+/// end what it begins, such as queries, conditional rendering and transform feedback, and leave the
+/// attachments of the framebuffer that is bound. State that Candela itself never changes, such as that of
+/// pixel transfers, is not restored for the host.
 struct Extension {
     std::string name;  ///< identifies the extension; in messages
     ExtensionPlace place = ExtensionPlace::before_tone_map;

@@ -270,6 +270,10 @@ class CANDELA_API FrameGraph {
     /// The same for a buffer.
     [[nodiscard]] std::optional<FoundBuffer> find_buffer(std::string_view name) const;
 
+    /// Names of the passes so far, in the order of their declaration. Valid as long as the graph, also when
+    /// it has been compiled.
+    [[nodiscard]] std::vector<std::string_view> pass_names() const;
+
     /// The description of a texture of this graph, as declared; none for another handle. A pass may reserve
     /// another one.
     [[nodiscard]] std::optional<TextureDesc> desc(TextureHandle texture) const;
