@@ -15,6 +15,7 @@
 #include <candela/graph/compile.hpp>
 #include <candela/graph/describe.hpp>
 #include <candela/scene/scene_error.hpp>
+#include "renderer/facade/surfaces_check.hpp"
 #include "renderer/facade/target_check.hpp"
 #include "renderer/gl/host_state.hpp"
 #include "renderer/passes/output/tone_map.hpp"
@@ -73,7 +74,6 @@ bool has_material(const RenderView& view) {
     return view.surfaces && view.surfaces->material != 0;
 }
 
-/// Throws SceneError. `index`: of the receiver.
 std::set<std::string, std::less<>> host_passes(const FrameHandles& frame) {
     std::set<std::string, std::less<>> names;
     for (const ViewHandles& view : frame.views) {
@@ -82,6 +82,7 @@ std::set<std::string, std::less<>> host_passes(const FrameHandles& frame) {
     return names;
 }
 
+/// Throws SceneError. `index`: of the receiver.
 void require_possible(const Receiver& receiver, std::size_t index) {
     constexpr float rounding = 1e-3F;  // of normals that a host has stored with 10 bits or more
     const glm::vec3 position = receiver.position;
@@ -159,8 +160,8 @@ void Renderer::State::switch_to(const Configuration& configuration, const FrameS
     FrameHandles frame = build_frame(graph, gpu_, configuration, shape, extensions);
     runtime_.switch_to(compile(std::move(graph)).take());
     frame_ = std::move(frame);
-    if (shape != shape_ || !same_radiance(configuration, configuration_)) ++refinement_clock_.epoch;
     backend_.set_host_passes(host_passes(frame_));
+    if (shape != shape_ || !same_radiance(configuration, configuration_)) ++refinement_clock_.epoch;
     configuration_ = configuration;
     shape_ = shape;
     extensions_ = std::move(extensions);
@@ -168,18 +169,12 @@ void Renderer::State::switch_to(const Configuration& configuration, const FrameS
     last_passes_.clear();
 }
 
-/// Throws gl::GlError if there are none, or if a target or a texture is not possible.
+/// Throws gl::GlError if there are none, or if a target is not possible.
 void Renderer::State::require_views(std::span<const RenderView> views) const {
     if (views.empty()) throw gl::GlError("a frame needs at least one view");
     const gl::Device& device = gpu_.device();
     for (const RenderView& view : views) {
         require_possible(device, view.target);
-        if (view.surfaces) {
-            require_texture(device, view.surfaces->depth, "the host's depth");
-            require_texture(device, view.surfaces->normal, "the host's normals");
-            require_texture(device, view.surfaces->albedo, "the host's albedo");
-            if (has_material(view)) require_texture(device, view.surfaces->material, "the host's material");
-        }
     }
 }
 
@@ -207,7 +202,7 @@ void Renderer::State::set_view(const ViewHandles& handles, const RenderView& vie
 /// Binds the host's textures, by which their content counts as new, unless it is known to be the same.
 void Renderer::State::set_surfaces(const HostSurfaceInputs& inputs, const HostSurfaces& surfaces,
                                    HostContent& last) {
-    const HostContent now{surfaces, texture_size(gpu_.device(), surfaces.depth)};
+    const HostContent now{surfaces, gl::texture_size(gpu_.gl(), surfaces.depth)};
     const bool revised = surfaces.revision != 0 && now != last;
     const bool same = surfaces.revision != 0 && now == last;
     last = now;
@@ -224,6 +219,9 @@ void Renderer::State::render(const World& world, std::span<const RenderView> vie
     gpu_.require_context();
     require_views(views);
     const gl::HostState host_state(gpu_.gl());
+    for (const RenderView& view : views) {
+        if (view.surfaces) require_readable(gpu_.device(), *view.surfaces);
+    }
     FrameShape shape{
         .views = {}, .quality = {}, .contents = contents_now(world), .receivers = !receivers_.empty()};
     std::vector<ViewRequest> requests;

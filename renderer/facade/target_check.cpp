@@ -7,6 +7,7 @@
 #include <fmt/format.h>
 
 #include "renderer/gl/objects.hpp"
+#include "renderer/gl/texture.hpp"
 
 namespace candela {
 namespace {
@@ -49,17 +50,10 @@ void require_texture(const gl::Device& device, std::uint32_t texture, std::strin
     }
 }
 
-glm::uvec2 texture_size(const gl::Device& device, std::uint32_t texture) {
-    glm::ivec2 size(0);
-    device.gl().GetTextureLevelParameteriv(texture, 0, GL_TEXTURE_WIDTH, &size.x);
-    device.gl().GetTextureLevelParameteriv(texture, 0, GL_TEXTURE_HEIGHT, &size.y);
-    return glm::uvec2(size);
-}
-
 void require_texture(const gl::Device& device, std::uint32_t texture, glm::uvec2 size,
                      std::string_view what) {
     require_texture(device, texture, what);
-    const glm::uvec2 found = texture_size(device, texture);
+    const glm::uvec2 found = gl::texture_size(device.gl(), texture);
     if (found != size) {
         throw gl::GlError(fmt::format("{}, texture {}, has {} × {} pixels instead of {} × {}", what, texture,
                                       found.x, found.y, size.x, size.y));

@@ -17,7 +17,4 @@ void require_texture(const gl::Device& device, std::uint32_t texture, std::strin
 /// Also if the texture has another size.
 void require_texture(const gl::Device& device, std::uint32_t texture, glm::uvec2 size, std::string_view what);
 
-/// Texels of a texture that exists; 0 if it has no storage.
-[[nodiscard]] glm::uvec2 texture_size(const gl::Device& device, std::uint32_t texture);
-
 }  // namespace candela

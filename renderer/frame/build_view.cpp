@@ -22,6 +22,7 @@
 #include "renderer/passes/sky/background.hpp"
 #include "renderer/passes/surfaces/depth_prepass.hpp"
 #include "renderer/passes/surfaces/gbuffer.hpp"
+#include "renderer/passes/surfaces/host_surfaces_check.hpp"
 #include "renderer/passes/view/view_cull.hpp"
 
 namespace candela {
@@ -79,6 +80,17 @@ Surfaces find_surfaces(FrameGraph& graph, Gpu& gpu, const SharedFrame& shared, c
         return add_depth_prepass(graph, gpu, seen, view);
     }
     return {};
+}
+
+/// The surfaces that the host has drawn.
+Surfaces read_surfaces(FrameGraph& graph, Gpu& gpu, const SharedFrame& shared, const ViewData& view,
+                       const ViewHandles& out) {
+    std::optional<ValueHandle<CheckedSurfaces>> checked;
+    if (gpu.checked()) {
+        checked =
+            add_host_surfaces_check(graph, gpu, *out.host, view.camera, shared.lit.scene, shared.lit.tracing);
+    }
+    return add_host_surfaces(graph, gpu, *out.host, view, shaded_parts(shared, out).glossy, checked);
 }
 
 /// The light lists of the shading path; none if each surface evaluates all lights. `depth` bounds tiles.
@@ -331,9 +343,8 @@ void build_view(FrameGraph& graph, Gpu& gpu, const SharedFrame& shared, const Vi
     const bool mirrors = shows_mirrors(shared, out);
     asked.albedo |= mirrors;  // the passes of mirrors read all of the G-buffer
 
-    const Surfaces found =
-        out.host ? add_host_surfaces(graph, gpu, *out.host, view, shaded_parts(shared, out).glossy)
-                 : find_surfaces(graph, gpu, shared, seen, view, out, asked);
+    const Surfaces found = out.host ? read_surfaces(graph, gpu, shared, view, out)
+                                    : find_surfaces(graph, gpu, shared, seen, view, out, asked);
     ViewFrame parts = first_parts(shared, index, view, found);
     extend(graph, shared, ExtensionPlace::after_surfaces, parts, out);
 

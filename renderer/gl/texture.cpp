@@ -97,6 +97,22 @@ GLuint create_view(const Functions& gl, GLuint whole, const TextureDesc& desc, T
     return name;
 }
 
+GLuint level_parameter(const Functions& gl, GLuint texture, GLenum what) {
+    GLint value = 0;
+    gl.GetTextureLevelParameteriv(texture, 0, what, &value);
+    return static_cast<GLuint>(value);
+}
+
+/// Reads floats of these channels from level 0 of a 2D texture.
+void read_part(const Functions& gl, GLuint texture, glm::uvec2 size, glm::uvec2 first, GLenum channels,
+               std::span<std::byte> content) {
+    const PackedTransfers packed(gl);
+    gl.MemoryBarrier(GL_TEXTURE_UPDATE_BARRIER_BIT);
+    gl.GetTextureSubImage(texture, 0, static_cast<GLint>(first.x), static_cast<GLint>(first.y), 0,
+                          static_cast<GLsizei>(size.x), static_cast<GLsizei>(size.y), 1, channels, GL_FLOAT,
+                          static_cast<GLsizei>(content.size()), content.data());
+}
+
 }  // namespace
 
 FormatInfo format_info(Format format) {
@@ -244,14 +260,40 @@ void Texture::bind(GLuint unit) const {
     gl().BindTextureUnit(unit, name());
 }
 
-std::vector<glm::vec4> read_texels(const Functions& gl, GLuint texture, glm::uvec2 size) {
+glm::uvec2 texture_size(const Functions& gl, GLuint texture) {
+    return {level_parameter(gl, texture, GL_TEXTURE_WIDTH), level_parameter(gl, texture, GL_TEXTURE_HEIGHT)};
+}
+
+TextureTraits traits_of(const Functions& gl, GLuint texture) {
+    const auto get = [&](GLenum what) { return level_parameter(gl, texture, what); };
+    TextureTraits traits{.size = texture_size(gl, texture)};
+    for (const GLenum bits :
+         {GL_TEXTURE_RED_SIZE, GL_TEXTURE_GREEN_SIZE, GL_TEXTURE_BLUE_SIZE, GL_TEXTURE_ALPHA_SIZE}) {
+        if (get(bits) > 0) ++traits.channels;
+    }
+    const GLenum type = get(GL_TEXTURE_RED_TYPE);
+    const GLenum format = get(GL_TEXTURE_INTERNAL_FORMAT);
+    const bool unsigned_floats = format == GL_R11F_G11F_B10F || format == GL_RGB9_E5;
+    traits.depth = get(GL_TEXTURE_DEPTH_SIZE) > 0;
+    traits.integers = type == GL_INT || type == GL_UNSIGNED_INT;
+    traits.has_sign = (type == GL_FLOAT && !unsigned_floats) || type == GL_SIGNED_NORMALIZED;
+    traits.srgb =
+        format == GL_SRGB8 || format == GL_SRGB8_ALPHA8 || format == GL_SRGB || format == GL_SRGB_ALPHA;
+    return traits;
+}
+
+std::vector<glm::vec4> read_texels(const Functions& gl, GLuint texture, glm::uvec2 size, glm::uvec2 first) {
     std::vector<glm::vec4> texels(static_cast<std::size_t>(size.x) * size.y);
-    const PackedTransfers packed(gl);
-    gl.MemoryBarrier(GL_TEXTURE_UPDATE_BARRIER_BIT);
-    gl.GetTextureSubImage(texture, 0, 0, 0, 0, static_cast<GLsizei>(size.x), static_cast<GLsizei>(size.y), 1,
-                          GL_RGBA, GL_FLOAT, static_cast<GLsizei>(texels.size() * sizeof(glm::vec4)),
-                          texels.data());
+    read_part(gl, texture, size, first, GL_RGBA, std::as_writable_bytes(std::span(texels)));
     return texels;
+}
+
+std::vector<float> read_depths(const Functions& gl, GLuint texture, glm::uvec2 size, glm::uvec2 first) {
+    std::vector<float> depths(static_cast<std::size_t>(size.x) * size.y);
+    const bool depth_format = level_parameter(gl, texture, GL_TEXTURE_DEPTH_SIZE) > 0;
+    read_part(gl, texture, size, first, depth_format ? GL_DEPTH_COMPONENT : GL_RED,
+              std::as_writable_bytes(std::span(depths)));
+    return depths;
 }
 
 void copy_texels(const Functions& gl, GLuint from, GLuint to, glm::uvec2 size) {

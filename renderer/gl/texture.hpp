@@ -65,9 +65,28 @@ class Texture : public Object {
     TextureDesc desc_;
 };
 
-/// Level 0 of a 2D colour texture of this name and size, row by row, the bottom row first; missing channels
-/// are (0, 0, 0, 1). Waits for the GPU.
-[[nodiscard]] std::vector<glm::vec4> read_texels(const Functions& gl, GLuint texture, glm::uvec2 size);
+/// Texels of level 0 of a 2D texture of this name; 0 without storage.
+[[nodiscard]] glm::uvec2 texture_size(const Functions& gl, GLuint texture);
+
+/// What shaders can read of a texture that Candela has not made.
+struct TextureTraits {
+    glm::uvec2 size{0};
+    std::uint32_t channels = 0;  ///< of colour
+    bool depth = false;          ///< a depth format
+    bool integers = false;
+    bool has_sign = false;  ///< values may be below 0
+    bool srgb = false;      ///< converted to linear values when it is read
+};
+/// Those of level 0 of a 2D texture.
+[[nodiscard]] TextureTraits traits_of(const Functions& gl, GLuint texture);
+
+/// `size` texels from `first` on, in level 0 of a 2D colour texture of this name, row by row, the bottom row
+/// first; missing channels are (0, 0, 0, 1). Waits for the GPU.
+[[nodiscard]] std::vector<glm::vec4> read_texels(const Functions& gl, GLuint texture, glm::uvec2 size,
+                                                 glm::uvec2 first = glm::uvec2(0));
+/// The same of window depth: that of a depth format, or else red.
+[[nodiscard]] std::vector<float> read_depths(const Functions& gl, GLuint texture, glm::uvec2 size,
+                                             glm::uvec2 first);
 
 /// Copies level 0 of a 2D texture to another of the same size and format.
 void copy_texels(const Functions& gl, GLuint from, GLuint to, glm::uvec2 size);

@@ -78,6 +78,7 @@ void require_limits(const gl::Limits& limits) {
 Gpu::Gpu(const gl::GetProc& get_proc, gl::ShaderLibrary shaders, const RendererOptions& options)
     : log_(options.log),
       scene_check_(log_, options.checked),
+      checked_(options.checked),
       device_(get_proc, options.debug_output ? gl::DebugOutput::on : gl::DebugOutput::off,
               [this](const gl::DebugMessage& message) { log_.warn("OpenGL: " + message.text); }),
       shaders_(std::move(shaders)),

@@ -66,6 +66,8 @@ class Gpu {
     [[nodiscard]] Log& log() { return log_; }
     /// What of a world is rendered.
     [[nodiscard]] SceneCheck& scene_check() { return scene_check_; }
+    /// See RendererOptions::checked.
+    [[nodiscard]] bool checked() const { return checked_; }
 
     /// Draws to a target of the host's.
     void set_target(const Target& target) const;
@@ -87,6 +89,7 @@ class Gpu {
 
     Log log_;
     SceneCheck scene_check_;
+    bool checked_;
     gl::Device device_;
     gl::ShaderLibrary shaders_;
     using ProgramKey = std::pair<std::vector<std::string>, std::vector<std::string>>;

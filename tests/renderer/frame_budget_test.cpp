@@ -183,7 +183,8 @@ TEST_CASE("a frame's cost is split by what it depends on") {
 TEST_CASE_FIXTURE(FrameBudgetTests, "the passes whose work grows with the pixels declare that they do") {
     add_all_that_is_drawn(scene.world);
     const gl::Texture texture(device, "host's", {.size = {8, 8}, .format = Format::rgba32f});
-    const HostSurfaces surfaces{.depth = texture.name(), .normal = texture.name(), .albedo = texture.name()};
+    const gl::Texture depth(device, "host's", {.size = {8, 8}, .format = Format::r32f});
+    const HostSurfaces surfaces{.depth = depth.name(), .normal = texture.name(), .albedo = texture.name()};
     std::set<std::string> of_pixels;
     for (const ShadingPath path : all_shading_paths) {
         for (const bool hosted : {false, true}) {

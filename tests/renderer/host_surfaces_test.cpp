@@ -11,6 +11,7 @@
 #include <string>
 #include <vector>
 
+#include <candela/scene/scene_error.hpp>
 #include "renderer/facade/device_of.hpp"
 #include "tests/renderer/path_fixture.hpp"
 #include "tests/renderer/texels.hpp"
@@ -486,6 +487,158 @@ TEST_CASE_FIXTURE(HostTexturesTests, "verification finds a revision that should 
     CHECK_NOTHROW(static_cast<void>(next(surfaces(1))));
     darken_albedo();
     CHECK(throws<GraphError>([&] { static_cast<void>(next(surfaces(1))); }, "host-surfaces"));
+}
+
+TEST_CASE_FIXTURE(HostTexturesTests, "a texture that cannot hold what it is said to is one clear error") {
+    const Picture before = next(surfaces(1));
+    const auto refuse = [&](const HostSurfaces& faulty, const char* why) {
+        CHECK(throws<gl::GlError>([&] { static_cast<void>(next(faulty)); }, why));
+        CHECK(next(surfaces(1)) == before);
+        CHECK(passes_that_ran() == only_copy);
+    };
+    const auto with = [&](std::uint32_t HostSurfaces::*texture, GLuint name) {
+        HostSurfaces faulty = surfaces(1);
+        faulty.*texture = name;
+        return faulty;
+    };
+    refuse(with(&HostSurfaces::depth, 4711), "the host's depth, texture 4711, does not exist");
+    refuse(with(&HostSurfaces::depth, normal->name()),
+           "has neither a depth format nor one with a single channel of numbers from 0 to 1");
+    refuse(with(&HostSurfaces::normal, depth->name()), "has 1 of the 3 channels that are read");
+    refuse(with(&HostSurfaces::material, depth->name()), "the host's material");
+    const gl::Texture bytes(device, "host's", {.size = size, .format = Format::rgba8});
+    refuse(with(&HostSurfaces::normal, bytes.name()), "cannot hold values below 0");
+    HostSurfaces octahedral = with(&HostSurfaces::normal, bytes.name());
+    octahedral.normal_encoding = NormalEncoding::octahedral;
+    refuse(octahedral, "cannot hold values below 0");
+    const gl::Texture curved(device, "host's", {.size = size, .format = Format::srgb8_alpha8});
+    HostSurfaces of_bytes = with(&HostSurfaces::normal, curved.name());
+    of_bytes.normal_encoding = NormalEncoding::unsigned_xyz;
+    refuse(of_bytes, "is read with an sRGB curve");
+    const gl::Texture numbers(device, "host's", {.size = size, .format = Format::r32ui});
+    refuse(with(&HostSurfaces::albedo, numbers.name()), "holds integers");
+    refuse(with(&HostSurfaces::depth, numbers.name()), "single channel of numbers from 0 to 1");
+    const gl::Texture depths(device, "host's", {.size = size, .format = Format::depth32f});
+    refuse(with(&HostSurfaces::albedo, depths.name()), "holds depth");
+    const gl::Texture small(device, "host's", {.size = size / 2U, .format = Format::rgba32f});
+    refuse(with(&HostSurfaces::albedo, small.name()), "has 24 × 18 pixels instead of 48 × 36");
+    const gl::Texture layers(
+        device, "host's",
+        {.size = size, .format = Format::rgba32f, .shape = TextureShape::array, .layers = 2});
+    refuse(with(&HostSurfaces::normal, layers.name()), "is not a 2D texture");
+
+    const gl::Functions& gl = device.gl();
+    std::array<GLuint, 2> made{};
+    gl.CreateTextures(GL_TEXTURE_2D, 2, made.data());
+    refuse(with(&HostSurfaces::albedo, made[0]), "has no storage");
+    gl.TextureStorage2D(made[1], 1, GL_R11F_G11F_B10F, size.x, size.y);
+    refuse(with(&HostSurfaces::normal, made[1]), "cannot hold values below 0");
+    gl.DeleteTextures(2, made.data());
+}
+
+TEST_CASE_FIXTURE(HostTexturesTests,
+                  "a checked renderer finds surfaces in other conventions than it is told") {
+    // Turned by 49 degrees, so that normals in view space are not like those in world space.
+    scene.world.set(scene.camera, looking({3.4F, 2.2F, 2.9F}, {0, 1, 0}));
+    static_cast<void>(usual());
+    const FrameResults results = renderer.results();
+    const Camera camera = scene.world.get<Camera>(scene.camera);
+    const float aspect = static_cast<float>(size.x) / static_cast<float>(size.y);
+    const glm::mat4 projection = glm::perspectiveNO(camera.vertical_fov, aspect, 0.5F, 20.0F);
+    const glm::mat3 view_from_world(results.view.view_from_world);
+    depth_texels = depths(device.gl(), results.depth);
+    normal_texels = texels(device.gl(), results.normal);
+    std::vector<glm::vec4> view_normals;
+    std::vector<glm::vec4> unsigned_normals;
+    for (std::size_t i = 0; i < depth_texels.size(); ++i) {
+        const float own = depth_texels[i].x;  // near / distance: the camera has no far plane
+        const glm::vec4 clip = projection * glm::vec4(0.0F, 0.0F, -camera.near_plane / own, 1.0F);
+        depth_texels[i].x = own > 0.0F ? 0.5F * clip.z / clip.w + 0.5F : 1.0F;
+        const glm::vec3 direction = decoded_normal(normal_texels[i]);
+        normal_texels[i] = glm::vec4(direction, 0.0F);
+        view_normals.emplace_back(view_from_world * direction, 0.0F);
+        unsigned_normals.emplace_back(0.5F * direction + 0.5F, 0.0F);
+    }
+    depth->fill(depth_texels);
+    normal->fill(normal_texels);
+    albedo->fill(texels(device.gl(), results.albedo));
+    const HostTexture in_view(device, view_normals, Format::rgba32f);
+    const HostTexture without_sign(device, unsigned_normals, Format::rgba32f);
+    conventions = {.clip_from_view = projection};
+
+    TestedRenderer checked(context->get_proc(), {.checked = true});
+    REQUIRE(checked.configure(configuration).empty());
+    const auto look = [&](const HostSurfaces& seen) {
+        const RenderView view = view_of(seen);
+        checked.render(scene.world, {&view, 1});
+        return to.read();
+    };
+    const auto refuse = [&](const HostSurfaces& faulty, const char* why) {
+        CHECK(throws<SceneError>([&] { static_cast<void>(look(faulty)); }, why));
+    };
+    const HostSurfaces right = surfaces(1);
+    const Picture expected = look(right);
+    CHECK(expected == from(right));
+    CHECK(look(right) == expected);
+    for (const PassRecord& pass : checked.last_passes()) CHECK(pass.ran == (pass.name == "tone-map"));
+
+    constexpr const char* elsewhere = "the world has no surface near the one that the host's depth tells";
+    HostSurfaces faulty = right;
+    faulty.clip_depth_from_0 = true;
+    refuse(faulty, elsewhere);
+    faulty = right;
+    faulty.clip_from_view = glm::perspectiveZO(camera.vertical_fov, aspect, 0.5F, 20.0F);
+    refuse(faulty, elsewhere);
+    faulty.clip_from_view = glm::perspectiveNO(camera.vertical_fov, aspect, 0.1F, 100.0F);
+    refuse(faulty, elsewhere);
+    faulty = right;
+    for (glm::vec4& texel : depth_texels) texel.x = 1.0F - texel.x;  // reversed, which the host does not say
+    depth->fill(depth_texels);
+    faulty.revision = 2;
+    refuse(faulty, elsewhere);
+    for (glm::vec4& texel : depth_texels) texel.x = 1.0F - texel.x;
+    depth->fill(depth_texels);
+
+    constexpr const char* turned = "the host's normal is not that of the surface";
+    faulty = right;
+    faulty.normal = in_view.name();
+    refuse(faulty, turned);
+    faulty.world_from_normal = glm::transpose(view_from_world);
+    CHECK(relative_mean_square(look(faulty), expected) < rounding);
+    faulty = right;
+    faulty.normal = without_sign.name();
+    refuse(faulty, turned);
+    faulty.normal_encoding = NormalEncoding::unsigned_xyz;
+    CHECK(relative_mean_square(look(faulty), expected) < rounding);
+
+    const Transform pose = scene.world.get<Transform>(scene.camera);
+    scene.world.set(scene.camera, looking({0, 1, 3}, {0, 1, 0}));
+    refuse(right, elsewhere);
+    scene.world.set(scene.camera, pose);
+    CHECK(look(right) == expected);
+    std::vector<Entity> entities;
+    for (const auto& [entity, instance] : scene.world.view<MeshInstance>()) entities.push_back(entity);
+    for (const Entity entity : entities) scene.world.remove<MeshInstance>(entity);
+    refuse(right, elsewhere);
+}
+
+TEST_CASE_FIXTURE(HostTexturesTests,
+                  "what only the host draws passes the check, and so does an empty picture") {
+    TestedRenderer checked(context->get_proc(), {.checked = true});
+    REQUIRE(checked.configure(configuration).empty());
+    const auto look = [&] {
+        const RenderView view = view_of(surfaces(0));
+        checked.render(scene.world, {&view, 1});
+    };
+    // Something nearer in a third of the picture, such as leaves.
+    std::vector<glm::vec4> with_leaves = depth_texels;
+    for (std::size_t i = 0; i < with_leaves.size(); ++i) {
+        if (i % 3 == 0) with_leaves[i].x *= 1.5F;
+    }
+    depth->fill(with_leaves);
+    CHECK_NOTHROW(look());
+    depth->fill(std::vector(with_leaves.size(), glm::vec4(0.0F)));
+    CHECK_NOTHROW(look());
 }
 
 }  // TEST_SUITE("host surfaces")

@@ -75,7 +75,8 @@ class CANDELA_API Renderer {
     /// finite or cannot show anything, or if an entity's parents form a cycle or were destroyed, and
     /// gl::GlError if another context is current, if there are no views, if a target does not exist, is
     /// incomplete, draws colour into no attachment or into integers, is larger than its framebuffer, or has a
-    /// size of 0 or above the driver's limit, if a driver limit is exceeded, or if the driver runs out of
+    /// size of 0 or above the driver's limit, if a texture of a HostSurfaces does not exist or has a size or
+    /// format that it cannot have, if a driver limit is exceeded, or if the driver runs out of
     /// memory; then GL_OUT_OF_MEMORY is also pending for the host's glGetError. Passes on what an extension
     /// throws. After an exception, the next call runs the passes that did not finish.
     void render(const World& world, std::span<const RenderView> views);

@@ -19,7 +19,9 @@ struct RendererOptions {
     /// Without it, warnings are lost: the library prints nothing.
     std::function<void(std::string_view line)> log{};
     /// Throws SceneError where parts of a world would otherwise be left out with a warning (see
-    /// Renderer::render), and also if a normal is not of unit length. For development.
+    /// Renderer::render), and also if a normal is not of unit length, or if the surfaces of a HostSurfaces
+    /// lie elsewhere than those of the world, or face another way. For development: the last of these waits
+    /// for the GPU.
     bool checked = false;
 };
 

@@ -57,11 +57,13 @@ enum class NormalEncoding : std::uint8_t {
 };
 
 /// The surfaces that are visible in a view, as drawn by the host: 2D textures of the same size, which should
-/// be that of the target. Candela then draws no surfaces itself and computes their light: the radiance that
-/// they reflect. It adds no emission, sky or blended surfaces, which are the host's. The scene's meshes must
-/// still be in the world, where they cast shadows and reflect light.
+/// be that of the target. Formats that cannot hold what is said here are errors; so is, with
+/// RendererOptions::checked, content that does not fit to the world. Candela then draws no surfaces itself
+/// and computes their light: the radiance that they reflect. It adds no emission, sky or blended surfaces,
+/// which are the host's. The scene's meshes must still be in the world, where they cast shadows and reflect
+/// light.
 struct HostSurfaces {
-    std::uint32_t depth = 0;   ///< GL name; window depth in [0, 1]: a depth format, or red
+    std::uint32_t depth = 0;   ///< GL name; window depth in [0, 1]: a depth format, or one with red alone
     std::uint32_t normal = 0;  ///< GL name
     std::uint32_t albedo = 0;  ///< GL name; sampled as linear RGB: the base colour, if there is a material
     /// GL name; red: roughness, green: metalness, as in Material, linear and in [0, 1]. What is not metal

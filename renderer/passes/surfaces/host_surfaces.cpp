@@ -24,7 +24,7 @@ HostSurfaceInputs import_host_surfaces(FrameGraph& graph, bool material) {
 }
 
 Surfaces add_host_surfaces(FrameGraph& graph, Gpu& gpu, const HostSurfaceInputs& inputs, const ViewData& view,
-                           bool glossy) {
+                           bool glossy, std::optional<ValueHandle<CheckedSurfaces>> checked) {
     return graph.add("host-surfaces", [&](Pass& pass) {
         pass.tag(Workload::pixels);
         pass.read(inputs.albedo, {Usage::sampled, UNIT_ALBEDO});
@@ -32,6 +32,7 @@ Surfaces add_host_surfaces(FrameGraph& graph, Gpu& gpu, const HostSurfaceInputs&
         pass.read(inputs.depth, {Usage::sampled, UNIT_DEPTH});
         if (glossy) pass.read(inputs.material.value(), {Usage::sampled, UNIT_GLOSS});
         pass.read(inputs.description);
+        if (checked) pass.read(*checked);
         read_view(pass, view);
         const MaterialParts parts{.glossy = glossy};
         const gl::Program& program =

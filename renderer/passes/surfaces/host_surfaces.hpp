@@ -20,10 +20,16 @@ struct HostSurfaceInputs {
 };
 [[nodiscard]] HostSurfaceInputs import_host_surfaces(FrameGraph& graph, bool material);
 
+/// What the surfaces are once they are checked: see add_host_surfaces_check.
+struct CheckedSurfaces {
+    bool operator==(const CheckedSurfaces&) const = default;
+};
+
 /// Adds node `host-surfaces` (raster): all parts of the surfaces that the host has drawn. Each pixel takes
 /// the texel of the host's at its centre. Depends on the host's textures and the view. `glossy`: also what
-/// makes them so; the host must have a material.
+/// makes them so; the host must have a material. `checked`: none if nothing is checked.
 [[nodiscard]] Surfaces add_host_surfaces(FrameGraph& graph, Gpu& gpu, const HostSurfaceInputs& inputs,
-                                         const ViewData& view, bool glossy);
+                                         const ViewData& view, bool glossy,
+                                         std::optional<ValueHandle<CheckedSurfaces>> checked);
 
 }  // namespace candela
