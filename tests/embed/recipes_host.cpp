@@ -1,0 +1,152 @@
+// The pieces of code in README.md and recipes.md, word for word: CMakeLists.txt extracts them. Each runs in a
+// block of its own, one after the other.
+
+#include <epoxy/gl.h>
+
+#include <cstdlib>
+
+#include "host.hpp"
+
+#include "recipes_includes.inc"
+
+#include <candela/scene/animation.hpp>
+#include <glm/gtc/matrix_transform.hpp>
+#include <glm/gtc/type_ptr.hpp>
+
+namespace {
+
+constexpr glm::uvec2 picture_size{64, 48};
+
+struct Bloom {
+    float strength = 0.5F;
+    bool operator==(const Bloom&) const = default;
+};
+
+struct Fade {
+    float share = 0.5F;
+    bool operator==(const Fade&) const = default;
+};
+
+void warn(const std::string& line) {
+    std::fprintf(stderr, "unexpected: %s\n", line.c_str());
+    std::exit(1);
+}
+
+GLuint make_framebuffer(glm::uvec2 of_size) {
+    return host::make_picture(of_size).framebuffer;
+}
+
+// The host draws the ground of its scene: depth, world-space normal and albedo.
+constexpr const char* ground_vertex = R"(
+layout(location = 0) uniform mat4 clip_from_world;
+void main() {
+    vec2 corner = vec2((gl_VertexID & 1) * 8 - 4, (gl_VertexID & 2) * 4 - 4);
+    gl_Position = clip_from_world * vec4(corner.x, 0.0, corner.y, 1.0);
+})";
+constexpr const char* ground_fragment = R"(
+layout(location = 0) out vec4 normal;
+layout(location = 1) out vec4 albedo;
+void main() {
+    normal = vec4(0.5, 1.0, 0.5, 0.0);
+    albedo = vec4(vec3(0.5), 1.0);
+})";
+constexpr const char* copy_fragment = R"(
+layout(binding = 0) uniform sampler2D radiance;
+layout(location = 0) uniform float factor;
+layout(location = 0) out vec4 result;
+void main() { result = factor * texelFetch(radiance, ivec2(gl_FragCoord.xy), 0); })";
+
+struct HostGbuffer {
+    GLuint depth = host::make_texture(picture_size, GL_DEPTH_COMPONENT32F);
+    GLuint normal = host::make_texture(picture_size, GL_RGBA8);
+    GLuint albedo = host::make_texture(picture_size, GL_RGBA8);
+    std::uint64_t drawings = 1;
+};
+
+/// With the depth state that is set.
+HostGbuffer draw_gbuffer(const glm::mat4& clip_from_world) {
+    const HostGbuffer gbuffer;
+    GLuint framebuffer = 0;
+    glCreateFramebuffers(1, &framebuffer);
+    glNamedFramebufferTexture(framebuffer, GL_COLOR_ATTACHMENT0, gbuffer.normal, 0);
+    glNamedFramebufferTexture(framebuffer, GL_COLOR_ATTACHMENT1, gbuffer.albedo, 0);
+    glNamedFramebufferTexture(framebuffer, GL_DEPTH_ATTACHMENT, gbuffer.depth, 0);
+    const GLenum targets[] = {GL_COLOR_ATTACHMENT0, GL_COLOR_ATTACHMENT1};
+    glNamedFramebufferDrawBuffers(framebuffer, 2, targets);
+    GLuint no_vertices = 0;
+    glCreateVertexArrays(1, &no_vertices);
+    const GLuint program = host::make_program(ground_vertex, ground_fragment);
+    glProgramUniformMatrix4fv(program, 0, 1, GL_FALSE, glm::value_ptr(clip_from_world));
+    glBindFramebuffer(GL_FRAMEBUFFER, framebuffer);
+    glViewport(0, 0, picture_size.x, picture_size.y);
+    glClear(GL_DEPTH_BUFFER_BIT);
+    glEnable(GL_DEPTH_TEST);
+    glUseProgram(program);
+    glBindVertexArray(no_vertices);
+    glDrawArrays(GL_TRIANGLE_STRIP, 0, 4);
+    return gbuffer;
+}
+
+void run_recipes(candela::Renderer& renderer, host::Scene& scene, host::Checks& checks) {
+    candela::World& world = scene.world;
+    const glm::uvec2 size = picture_size;
+    const candela::Entity camera = scene.camera;
+    const candela::Entity lamp = scene.lamp;
+    const candela::Entity player = world.create();
+    candela::AnimationPlayer still;
+    still.clips.push_back(std::make_shared<const candela::AnimationClip>());
+    world.set(player, still);
+    const std::shared_ptr<const candela::Mesh> mesh = host::ground(0.2F, 0.5F);
+    const host::Picture picture = host::make_picture(size);
+    const GLuint framebuffer = picture.framebuffer;
+    const candela::Target target{framebuffer, size};
+    const std::vector<glm::vec3> particles{{0, 0.5F, 0}, {1, 0.5F, 0}};
+
+    const glm::mat4 projection =
+        glm::perspective(world.get<candela::Camera>(camera).vertical_fov,
+                         static_cast<float>(size.x) / static_cast<float>(size.y), 0.1F, 10.0F);
+    const HostGbuffer gbuffer =
+        draw_gbuffer(projection * glm::lookAt(glm::vec3(0, 3, 0), glm::vec3(0), glm::vec3(0, 0, -1)));
+
+    GLuint no_vertices = 0;
+    glCreateVertexArrays(1, &no_vertices);
+    const GLuint program = host::make_program(host::whole_viewport, copy_fragment);
+    const auto set_uniforms = [](GLuint of_program, const candela::World& of) {
+        for (const auto& [entity, bloom] : of.view<Bloom>())
+            glProgramUniform1f(of_program, 0, bloom.strength);
+    };
+    const auto draw_faded = [=](const candela::World& of) {
+        float factor = 1.0F;
+        for (const auto& [entity, fade] : of.view<Fade>()) factor = fade.share;
+        glProgramUniform1f(program, 0, factor);
+        glUseProgram(program);
+        glBindVertexArray(no_vertices);
+        glDrawArrays(GL_TRIANGLES, 0, 3);
+    };
+    glProgramUniform1f(program, 0, 1.0F);
+
+    // Whatever a piece does, frames of the usual view go on, and are lit.
+    const auto end_of = [&](const std::string& piece) {
+        checks.check(glGetError() == GL_NO_ERROR, piece + ": GL reported an error");
+        renderer.render(world, camera, target);
+        float brightest = 0.0F;
+        for (const glm::vec4& pixel : host::read(picture)) brightest = std::max(brightest, pixel.r);
+        checks.check(brightest > 0.1F, piece + ": the picture is dark");
+    };
+#include "recipes.inc"
+}
+
+}  // namespace
+
+int main() {
+    const auto context = host::make_context();
+    host::Checks checks;
+    host::Scene scene = host::make_scene();
+    {
+        candela::Renderer renderer(
+            context->get_proc(),
+            {.log = [](std::string_view line) { warn(std::string(line)); }, .checked = true});
+        run_recipes(renderer, scene, checks);
+    }
+    return checks.status();
+}
