@@ -31,7 +31,7 @@ double milliseconds(Clock::duration duration) {
 
 // The frame
 
-const FrameRecord& GraphRuntime::run(const World& world, Timing timing) {
+const FrameRecord& GraphRuntime::run(const World& world, Timing timing, const std::function<bool()>& wanted) {
     if (!graph_) throw GraphError("there is no frame graph");
     require_imports();
     mark(world, 0);
@@ -39,14 +39,16 @@ const FrameRecord& GraphRuntime::run(const World& world, Timing timing) {
     bool marked_too_many = false;
 
     record_.frame = frame_;
-    std::fill(state_->turned.begin(), state_->turned.end(), std::uint8_t{0});
+    for (PassRecord& record : record_.passes) {
+        record.ran = record.verified = false;
+        record.cpu_ms = 0;
+    }
+    if (record_.complete) std::fill(state_->turned.begin(), state_->turned.end(), std::uint8_t{0});
+    record_.complete = false;
     Execution execution(*this, world);
     Clock::time_point last = timing == Timing::on ? Clock::now() : Clock::time_point{};
     for (std::uint32_t position = 0; position < state_->step_count(); ++position) {
         const detail::Step& step = state_->steps[position];
-        PassRecord& record = record_.passes[position];
-        record.ran = record.verified = false;
-        record.cpu_ms = 0;
         pending_barriers_ = pending_barriers_ | step.barrier;
         if (state_->need[position] == nothing) continue;
         const bool changed = dirty(step, world);
@@ -59,9 +61,11 @@ const FrameRecord& GraphRuntime::run(const World& world, Timing timing) {
             continue;
         }
 
+        if (wanted && !wanted()) return record_;
         execution.position_ = position;
         run_step(execution, changed);
         marked_too_many |= !renewed_results(step);
+        PassRecord& record = record_.passes[position];
         record.ran = true;
         if (timing == Timing::on) {
             const Clock::time_point now = Clock::now();
@@ -70,6 +74,7 @@ const FrameRecord& GraphRuntime::run(const World& world, Timing timing) {
         }
     }
     ++frame_;
+    record_.complete = true;
     return record_;
 }
 
@@ -197,9 +202,9 @@ void GraphRuntime::release(std::uint32_t slot) {
 }
 
 /// Swaps the two objects of a resource with a history: the current content becomes the history, and the
-/// object of the old history will be written.
+/// object of the old history will be written. Not a second time in a frame that several runs complete.
 void GraphRuntime::turn_over(std::uint32_t slot) {
-    std::swap(state_->slots[slot], state_->slots[slot + 1]);
+    if (state_->turned[slot] == 0) std::swap(state_->slots[slot], state_->slots[slot + 1]);
     state_->slots[slot].filled = false;
     state_->turned[slot] = 1;
 }

@@ -25,13 +25,13 @@ const Configuration& Renderer::configuration() const {
     return state_->configuration();
 }
 
-void Renderer::render(const World& world, std::span<const RenderView> views) {
-    state_->render(world, views);
+bool Renderer::render(const World& world, std::span<const RenderView> views, const FrameOptions& options) {
+    return state_->render(world, views, options);
 }
 
 void Renderer::render(const World& world, Entity camera, const Target& target, glm::vec2 jitter) {
     const RenderView view{.camera = camera, .target = target, .jitter = jitter};
-    state_->render(world, {&view, 1});
+    state_->render(world, {&view, 1}, {});
 }
 
 FrameResults Renderer::results(std::size_t view) const {

@@ -161,7 +161,8 @@ void Renderer::State::switch_to(const Configuration& configuration, const FrameS
     runtime_.switch_to(compile(std::move(graph)).take());
     frame_ = std::move(frame);
     backend_.set_host_passes(host_passes(frame_));
-    if (shape != shape_ || !same_radiance(configuration, configuration_)) ++refinement_clock_.epoch;
+    const bool same = shape == shape_ && same_radiance(configuration, configuration_);
+    if (!same || abandoned_) ++refinement_clock_.epoch;
     configuration_ = configuration;
     shape_ = shape;
     extensions_ = std::move(extensions);
@@ -215,7 +216,8 @@ void Renderer::State::set_surfaces(const HostSurfaceInputs& inputs, const HostSu
     if (inputs.material) runtime_.bind(*inputs.material, surfaces.material, {});
 }
 
-void Renderer::State::render(const World& world, std::span<const RenderView> views) {
+bool Renderer::State::render(const World& world, std::span<const RenderView> views,
+                             const FrameOptions& options) {
     gpu_.require_context();
     require_views(views);
     const gl::HostState host_state(gpu_.gl());
@@ -238,7 +240,7 @@ void Renderer::State::render(const World& world, std::span<const RenderView> vie
     shape.quality = quality_now(world, std::move(requests));
     if (shape != shape_) switch_to(configuration_, shape, extensions_);
     set_views(views);
-    // The mean starts over after a frame that threw.
+    // The mean starts over after a frame that threw, but not after one that was abandoned.
     if (!std::exchange(completed_, false)) {
         ++refinement_clock_.epoch;
         refine_ = false;
@@ -253,11 +255,14 @@ void Renderer::State::render(const World& world, std::span<const RenderView> vie
     const std::uint64_t index = next_frame_++;
     {
         const TimedFrame timed(backend_.timer(), index);
-        last_passes_ = runtime_.run(world, Timing::on).passes;
+        const FrameRecord& record = runtime_.run(world, Timing::on, options.wanted);
+        last_passes_ = record.passes;
+        abandoned_ = !record.complete;
     }
     gpu_.log().tell_counts();
-    received_ = static_cast<std::uint32_t>(receivers_.size());
     completed_ = true;
+    if (abandoned_) return false;
+    received_ = static_cast<std::uint32_t>(receivers_.size());
     waiting_ = frame_.waiting ? runtime_.value(*frame_.waiting) : 0;
     waits_ = waiting_ > 0 || (frame_.focus_state && runtime_.value(*frame_.focus_state).held);
     refine_ = !waits_ && refines();
@@ -265,6 +270,7 @@ void Renderer::State::render(const World& world, std::span<const RenderView> vie
     pending_.back().report.waiting_surfels = waiting_;
     match_times(backend_.timer().collect());
     if (runtime_.verifies()) runtime_.verify(world);
+    return true;
 }
 
 /// Whether another frame is to be added to the mean of a view.
@@ -394,7 +400,7 @@ void Renderer::State::invalidate() {
 
 void Renderer::State::match_times(const std::vector<gl::FrameTime>& times) {
     for (const gl::FrameTime& time : times) {
-        // A frame that threw has GPU times but no report.
+        // A frame that threw or was abandoned has GPU times but no report.
         if (pending_.empty() || pending_.front().report.index != time.frame) continue;
         PendingFrame frame = std::move(pending_.front());
         pending_.pop_front();

@@ -24,7 +24,7 @@ class CANDELA_PRIVATE Renderer::State {
 
     [[nodiscard]] std::vector<std::string> configure(const Configuration& configuration);
     [[nodiscard]] const Configuration& configuration() const { return configuration_; }
-    void render(const World& world, std::span<const RenderView> views);
+    bool render(const World& world, std::span<const RenderView> views, const FrameOptions& options);
     [[nodiscard]] FrameResults results(std::size_t view) const;
     void set_receivers(std::vector<Receiver> receivers);
     [[nodiscard]] std::vector<glm::vec3> received_light() const;
@@ -41,7 +41,7 @@ class CANDELA_PRIVATE Renderer::State {
     [[nodiscard]] std::string describe(GraphFormat format) const;
     [[nodiscard]] Quality quality() const { return {shape_.quality.scale, frame_.views.front().interleave}; }
     [[nodiscard]] bool settled() const {
-        return completed_ && !waits_ && !refine_ && shape_.quality == Quality{};
+        return completed_ && !abandoned_ && !waits_ && !refine_ && shape_.quality == Quality{};
     }
     [[nodiscard]] const std::vector<PassRecord>& last_passes() const { return last_passes_; }
     [[nodiscard]] Gpu& gpu() { return gpu_; }
@@ -110,6 +110,7 @@ class CANDELA_PRIVATE Renderer::State {
     bool refine_ = false;         // whether the next frame adds another sample to the mean
     std::uint32_t received_ = 0;  // receivers in the last frame
     bool completed_ = false;      // whether the last frame did not throw, nor was followed by `invalidate`
+    bool abandoned_ = false;      // the last frame was not wanted any more, and the next one goes on with it
     std::vector<PassRecord> last_passes_;
     std::uint64_t next_frame_ = 0;
     std::deque<PendingFrame> pending_;

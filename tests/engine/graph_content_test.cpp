@@ -138,6 +138,57 @@ TEST_CASE("graph: with histories, results are those of a plain evaluation" * doc
     }));
 }
 
+TEST_CASE("graph: abandoned frames give the same results as running all, whatever the host edits meanwhile" *
+          doctest::test_suite("random")) {
+    CHECK(rc::check([] {
+        const Graph graph = random_graph::make({.passes = 20, .histories = false});
+        Host host{0, std::vector<Content>(graph.resources.size(), 1)};
+        Machine machine(graph);
+        for (int frame = 0; frame < 6; ++frame) {
+            for (auto tries = random_graph::choose(4); tries > 0; --tries) {
+                machine.provide(host);
+                const FrameRecord& record = machine.run_some(static_cast<int>(random_graph::choose(20)));
+                if (record.complete) continue;
+                machine.check_use();
+                if (random_graph::one_in(2)) edit(host);
+            }
+            machine.provide(host);
+            RC_ASSERT(machine.run().complete);
+            machine.check(meaning(graph, machine.runtime().graph()->plan().order, host, nullptr));
+            edit(host);
+        }
+    }));
+}
+
+TEST_CASE("graph: histories are those of the last complete frame" * doctest::test_suite("random")) {
+    CHECK(rc::check([] {
+        const Graph graph = random_graph::make({.passes = 20});
+        Host host{0, std::vector<Content>(graph.resources.size(), 1)};
+        Machine machine(graph);
+        Meaning before;
+        for (int frame = 0; frame < 6; ++frame) {
+            machine.runtime().invalidate();  // run all: histories are not inputs
+            bool complete = false;
+            for (auto tries = random_graph::choose(4); tries > 0 && !complete; --tries) {
+                machine.provide(host);
+                complete = machine.run_some(static_cast<int>(random_graph::choose(30))).complete;
+                if (complete || random_graph::one_in(2)) continue;
+                edit(host);
+                machine.runtime().invalidate();
+            }
+            if (!complete) {
+                machine.provide(host);
+                (void)machine.run();
+            }
+            const Meaning expected =
+                meaning(graph, machine.runtime().graph()->plan().order, host, frame == 0 ? nullptr : &before);
+            machine.check(expected);
+            before = expected;
+            edit(host);
+        }
+    }));
+}
+
 /// Whether nothing else is ever written to the object that holds the pass's result.
 bool stays(const Graph& graph, const std::vector<std::uint32_t>& objects,
            const random_graph::Access& result) {

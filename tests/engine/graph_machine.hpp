@@ -122,6 +122,10 @@ class Machine {
     }
 
     const FrameRecord& run() { return runtime_.run(world_); }
+    /// Abandons the frame before the pass after this many.
+    const FrameRecord& run_some(int passes) {
+        return runtime_.run(world_, Timing::off, [&passes] { return passes-- > 0; });
+    }
 
     /// Checks everything that is visible from outside.
     void check(const Meaning& expected) const {

@@ -323,6 +323,54 @@ TEST_CASE_FIXTURE(GraphFixture, "graph run: the runtime still works after a pass
     CHECK(runtime.run(world).frame == 3);  // counts successful frames only
 }
 
+TEST_CASE_FIXTURE(GraphFixture, "graph run: a frame that is abandoned goes on in the next run") {
+    const auto knob = graph.import_value<int>("knob");
+    const auto doubled = graph.add("double", [&](Pass& pass) {
+        pass.read(knob);
+        const auto written = pass.write(graph.value<int>("doubled"));
+        pass.run([=](Execution& run) { run.set(written, 2 * run.value(knob)); });
+        return written;
+    });
+    const auto squared = graph.add("square", [&](Pass& pass) {
+        pass.read(doubled);
+        const auto written = pass.write(graph.value<int>("squared"));
+        pass.run([=](Execution& run) { run.set(written, run.value(doubled) * run.value(doubled)); });
+        return written;
+    });
+    int shown = 0;
+    graph.add("show", [&](Pass& pass) {
+        pass.read(squared);
+        pass.side_effect();
+        pass.run([&, squared](Execution& run) { shown = run.value(squared); });
+    });
+    switch_to();
+    const auto run_some = [&](int passes) {
+        const FrameRecord& record = runtime.run(world, Timing::off, [&passes] { return passes-- > 0; });
+        CHECK_FALSE(record.complete);
+        CHECK(record.frame == 0);
+        return ran(record);
+    };
+    runtime.set(knob, 3);
+    CHECK(run_some(0) == "");
+    CHECK(run_some(1) == "double");
+    CHECK(run_some(1) == "square");
+    CHECK(run_some(0) == "");
+    CHECK(shown == 0);
+    CHECK(run() == "show");
+    CHECK(shown == 36);
+    runtime.set(knob, 4);
+    CHECK(ran(runtime.run(world, Timing::off, [&] { return runtime.value(doubled) != 8; })) == "double");
+    runtime.set(knob, 5);
+    CHECK(run() == "double square show");
+    CHECK(shown == 100);
+    // Nobody asks about passes that do not run.
+    int asked = 0;
+    const FrameRecord& last = runtime.run(world, Timing::off, [&] { return ++asked > 0; });
+    CHECK(last.complete);
+    CHECK(last.frame == 2);
+    CHECK(asked == 1);
+}
+
 TEST_CASE_FIXTURE(
     GraphFixture,
     "graph run: the back end is told passes, their targets, and also barriers of skipped passes") {

@@ -79,7 +79,12 @@ class CANDELA_API Renderer {
     /// format that it cannot have, if a driver limit is exceeded, or if the driver runs out of
     /// memory; then GL_OUT_OF_MEMORY is also pending for the host's glGetError. Passes on what an extension
     /// throws. After an exception, the next call runs the passes that did not finish.
-    void render(const World& world, std::span<const RenderView> views);
+    ///
+    /// Returns whether the frame is complete: false if `options` say that it is not wanted any more. Each
+    /// target then holds what it held before, or its picture. What has been computed is not lost: the next
+    /// call runs the passes that are left, and those whose inputs have changed. Until it is complete, nothing
+    /// is settled, results and received light may be of either frame, and take_frames reports no times.
+    bool render(const World& world, std::span<const RenderView> views, const FrameOptions& options = {});
     /// The same with one view. `jitter`: see RenderView::jitter.
     void render(const World& world, Entity camera, const Target& target, glm::vec2 jitter = glm::vec2(0.0F));
 

@@ -1,6 +1,7 @@
 #pragma once
 
 #include <cstdint>
+#include <functional>
 #include <optional>
 
 #include <glm/mat3x3.hpp>
@@ -108,6 +109,13 @@ struct RenderView {
     /// anything in the view changes.
     bool estimate_error = false;
     std::optional<HostSurfaces> surfaces{};  ///< none: Candela draws the surfaces
+};
+
+/// Options of one frame.
+struct FrameOptions {
+    /// Asked before each pass that runs; must not call the renderer. If it returns false, the frame is
+    /// abandoned: for example because the user has moved something meanwhile. Empty: always wanted.
+    std::function<bool()> wanted{};
 };
 
 /// A texture of a frame; name 0 if the configuration has no such texture, or if it was not asked for.

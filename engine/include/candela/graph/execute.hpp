@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <concepts>
 #include <cstdint>
+#include <functional>
 #include <memory>
 #include <optional>
 #include <span>
@@ -212,9 +213,15 @@ class CANDELA_API GraphRuntime {
     /// pass uses was not bound or set. Exceptions from a pass pass through: that pass then counts as not
     /// having run, and the next `run` runs it again; passes that had completed keep their results.
     ///
+    /// `wanted` is asked before each pass that runs. If it returns false, the run ends there, and the record
+    /// is not `complete`. The next run goes on with the same frame: it runs the passes that are left, and
+    /// those whose inputs have changed meanwhile. Histories are those of the last complete frame, also after
+    /// an exception, but not if `switch_to` follows it.
+    ///
     /// Changes of the world, and another world in its place, are detected by the revisions of the component
     /// pools.
-    const FrameRecord& run(const World& world, Timing timing = Timing::off);
+    const FrameRecord& run(const World& world, Timing timing = Timing::off,
+                           const std::function<bool()>& wanted = {});
 
     /// Turns recording for `verify` on or off; initially off. While on, the outputs of a pass are read back
     /// (as digests) each time that it runs; while off, there is no cost.
@@ -228,9 +235,9 @@ class CANDELA_API GraphRuntime {
     /// names the pass, the first one in execution order, and the resource: the pass depends on something that
     /// it did not declare, or is not deterministic. The pass then counts as not having run.
     ///
-    /// Call `verify` after `run`, with the same world, unchanged. Each pass reads what the passes before it
-    /// have just written again, so the check also covers versions that later passes modify in place and
-    /// transients whose object another resource uses later in the frame. Not run again are
+    /// Call `verify` after a complete `run`, with the same world, unchanged. Each pass reads what the passes
+    /// before it have just written again, so the check also covers versions that later passes modify in place
+    /// and transients whose object another resource uses later in the frame. Not run again are
     /// - passes with side effects and passes that write imports (they run in every frame),
     /// - passes that read a history or have declared Pass::keeps_state,
     /// - passes that would overwrite a result of one of those, and

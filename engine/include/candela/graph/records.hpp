@@ -17,6 +17,7 @@ struct PassRecord {
 struct FrameRecord {
     std::uint64_t frame = 0;         ///< number of runs completed before this one
     std::vector<PassRecord> passes;  ///< all passes that were not culled, in execution order
+    bool complete = true;  ///< false: the host did not want it any more, and passes that had to run did not
 };
 
 /// Bytes of GPU storage that a runtime owns, without driver overhead.
