@@ -114,7 +114,7 @@ def run_program_part(part: str, out: pathlib.Path) -> None:
         "shading": [["shading", cornell]],
         "gather": [["gather", scenes.find(name, SCENES)] for name in GATHER_SCENES],
         "moves": [["moves"]],
-        "edits": [["edits"]],
+        "edits": [["edits"], ["edits", "--things", "100", "--things", "2000", "--things", "50000"]],
         "paths": [
             ["paths", cornell, "--vpls", "256"],
             ["paths", hall, "--rounds", "3"],

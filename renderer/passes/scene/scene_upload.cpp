@@ -2,12 +2,12 @@
 
 #include <fmt/format.h>
 #include <algorithm>
-#include <compare>
 #include <cstddef>
 #include <glm/matrix.hpp>
 #include <map>
 #include <memory>
 #include <numeric>
+#include <tuple>
 #include <unordered_map>
 #include <utility>
 
@@ -74,7 +74,11 @@ struct DrawKey {
     bool mirrored;
     bool emits;
     MaterialImages images;
-    auto operator<=>(const DrawKey&) const = default;
+
+    [[nodiscard]] auto order() const {
+        return std::tie(alpha, base_colour, double_sided, mirrored, emits, images);
+    }
+    [[nodiscard]] bool operator<(const DrawKey& other) const { return order() < other.order(); }
 };
 using Buckets = std::map<DrawKey, std::vector<SceneLayout::Drawable>>;
 
