@@ -40,7 +40,8 @@ void cull(const Gpu& gpu, Execution& run, const CullNode& node) {
     const glm::mat4& clip_from_world = run.value(node.camera).clip_from_world;
     const std::shared_ptr<SeenObjects> seen =
         run.has_result() ? run.previous(node.kept)->seen : std::make_shared<SeenObjects>();
-    const bool all = !run.has_result() || run.changed(node.scene.layout);
+    // Another hierarchy was made anew, and its topology may have the same number.
+    const bool all = !run.has_result() || run.changed(node.scene.layout) || run.changed(node.hierarchy);
     std::vector<std::uint32_t> changed =
         seen->update(run.value(node.hierarchy)->top, layout.solid_count, clip_from_world, all);
     run.set(node.kept, {seen});
