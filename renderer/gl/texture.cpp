@@ -267,8 +267,8 @@ glm::uvec2 texture_size(const Functions& gl, GLuint texture) {
 TextureTraits traits_of(const Functions& gl, GLuint texture) {
     const auto get = [&](GLenum what) { return level_parameter(gl, texture, what); };
     TextureTraits traits{.size = texture_size(gl, texture)};
-    for (const GLenum bits :
-         {GL_TEXTURE_RED_SIZE, GL_TEXTURE_GREEN_SIZE, GL_TEXTURE_BLUE_SIZE, GL_TEXTURE_ALPHA_SIZE}) {
+    for (const GLenum bits : std::array<GLenum, 4>{GL_TEXTURE_RED_SIZE, GL_TEXTURE_GREEN_SIZE,
+                                                   GL_TEXTURE_BLUE_SIZE, GL_TEXTURE_ALPHA_SIZE}) {
         if (get(bits) > 0) ++traits.channels;
     }
     const GLenum type = get(GL_TEXTURE_RED_TYPE);

@@ -251,7 +251,9 @@ TEST_CASE("world: the changes since a revision are known, of copies that have be
     world.remove<Height>(a);
     const auto changed = [](const World& in, Tick tick) {
         std::vector<Entity> entities;
-        for (const Change& change : in.changes_since<Height>(tick).value()) entities.push_back(change.entity);
+        const auto changes = in.changes_since<Height>(tick);
+        REQUIRE(changes);
+        for (const Change& change : *changes) entities.push_back(change.entity);
         return entities;
     };
     CHECK(changed(world, 0) == std::vector{a, b, a});
