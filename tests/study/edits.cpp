@@ -246,7 +246,8 @@ void study_world(const gl::GetProc& get_proc, int rounds, std::uint32_t things) 
         if (count > things) continue;
         const auto move = [&, count](int round) {
             for (std::uint32_t i = 0; i < count; ++i) {
-                const Entity entity = all[(std::uint64_t{i} * things / count + 7U * round) % things];
+                const Entity entity =
+                    all[(std::uint64_t{i} * things / count + 7 * static_cast<std::uint32_t>(round)) % things];
                 world.edit<Transform>(entity, [](Transform& pose) { pose.translation.y += 0.1F; });
             }
         };
