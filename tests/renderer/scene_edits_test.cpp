@@ -106,6 +106,33 @@ TEST_CASE_FIXTURE(PathFixture, "light does not leak through a wall under which t
     }
 }
 
+TEST_CASE_FIXTURE(PathFixture, "a hierarchy that is built again after a move may be larger than it was") {
+    // The hierarchy over all things first has many parts of a large mesh. Small things take their places, a
+    // few at a time. When all of them move, it is built again, with parts of the small ones, too.
+    Scene scene = lit_ground();
+    const Entity large = add(scene.world, at({0, 1, 0}), MeshInstance{soup(3000, 5)});
+    const MeshInstance small{box_inwards(0.02F, diffuse({0.8F, 0.4F, 0.2F}))};
+    std::mt19937 random(7);
+    const auto anywhere = [&] {
+        std::uniform_real_distribution<float> along(-0.9F, 0.9F);
+        const float x = along(random), y = along(random);
+        return at({x, 1.0F + y, along(random)});
+    };
+    std::vector<Entity> things;
+    for (int i = 0; i < 100; ++i) things.push_back(add(scene.world, anywhere(), small));
+    configure(traced(VplPlacement::paths));
+    static_cast<void>(render(scene, picture_size));
+    scene.world.destroy(large);
+    while (things.size() < 700) {
+        static_cast<void>(render(scene, picture_size));
+        for (std::size_t i = things.size() / 5; i > 0; --i)
+            things.push_back(add(scene.world, anywhere(), small));
+    }
+    static_cast<void>(render(scene, picture_size));
+    for (const Entity thing : things) scene.world.set(thing, anywhere());
+    CHECK(render(scene, picture_size) == from_scratch(scene, picture_size));
+}
+
 TEST_CASE_FIXTURE(GlFixture, "what is gone takes no memory for long") {
     TestedRenderer renderer(context->get_proc());
     REQUIRE(renderer.configure(direct_only()).empty());

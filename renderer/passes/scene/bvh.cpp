@@ -6,6 +6,7 @@
 #include <memory>
 #include <numeric>
 #include <span>
+#include <utility>
 #include <vector>
 
 #include <candela/graph/execute.hpp>
@@ -133,21 +134,30 @@ void upload_top(const Gpu& gpu, Execution& run, const HierarchyBuffers& buffers,
     writer.flush();
 }
 
+/// Whether the top or any object that has changed has no place in the buffers.
+bool lacks_place(const UploadedHierarchy& uploaded) {
+    const SceneHierarchy& scene = uploaded.scene;
+    return top_size_of(scene) > uploaded.top_room ||
+           !std::ranges::all_of(scene.changed(),
+                                [&](std::uint32_t i) { return has_place(*scene.objects[i]); });
+}
+
 /// Uploads what has changed since the last call.
 void upload_hierarchy(const Gpu& gpu, Execution& run, const HierarchyBuffers& buffers,
                       UploadedHierarchy& uploaded, const SceneLayout& layout, const Deformations& deformed,
                       bool other_layout) {
     SceneHierarchy& scene = uploaded.scene;
-    std::vector<std::uint32_t> all(scene.objects.size());
-    std::iota(all.begin(), all.end(), 0U);
-    const bool needs_place = other_layout || std::ranges::any_of(scene.changed(), [&](std::uint32_t i) {
-                                 return !has_place(*scene.objects[i]);
-                             });
-    const bool moved = needs_place && place(run, buffers, uploaded, all);
-    const std::vector<std::uint32_t>& which = moved ? all : scene.changed();
+    std::vector<std::uint32_t> which = scene.changed();
+    bool all = false;
+    if (other_layout || lacks_place(uploaded)) {
+        std::vector<std::uint32_t> every(scene.objects.size());
+        std::iota(every.begin(), every.end(), 0U);
+        all = place(run, buffers, uploaded, every);
+        if (all) which = std::move(every);
+    }
     for (const std::uint32_t i : which) scene.note_place(i);
     upload_objects(gpu, run, buffers, scene, which, layout, deformed);
-    upload_top(gpu, run, buffers, scene, moved);
+    upload_top(gpu, run, buffers, scene, all);
 }
 
 void warn_of_rounding(Log& log, const SceneMetrics& metrics) {
