@@ -134,4 +134,50 @@ inline Scene make_scene() {
     return scene;
 }
 
+/// Surfaces as a host draws them by itself.
+struct Gbuffer {
+    GLuint framebuffer = 0;
+    GLuint depth = 0;
+    GLuint normal = 0;  ///< world space, 0.5 n + 0.5
+    GLuint albedo = 0;
+};
+
+/// Draws the ground of the scene, with the depth state that is set.
+inline Gbuffer draw_ground(const glm::mat4& clip_from_world, glm::uvec2 size) {
+    const char* const vertex = R"(
+layout(location = 0) uniform mat4 clip_from_world;
+void main() {
+    vec2 corner = vec2((gl_VertexID & 1) * 8 - 4, (gl_VertexID & 2) * 4 - 4);
+    gl_Position = clip_from_world * vec4(corner.x, 0.0, corner.y, 1.0);
+})";
+    const char* const fragment = R"(
+layout(location = 0) out vec4 normal;
+layout(location = 1) out vec4 albedo;
+void main() {
+    normal = vec4(0.5, 1.0, 0.5, 0.0);  // (0, 1, 0), stored without a sign
+    albedo = vec4(vec3(0.5), 1.0);
+})";
+    Gbuffer drawn{.depth = make_texture(size, GL_DEPTH_COMPONENT32F),
+                  .normal = make_texture(size, GL_RGBA8),
+                  .albedo = make_texture(size, GL_RGBA8)};
+    glCreateFramebuffers(1, &drawn.framebuffer);
+    glNamedFramebufferTexture(drawn.framebuffer, GL_COLOR_ATTACHMENT0, drawn.normal, 0);
+    glNamedFramebufferTexture(drawn.framebuffer, GL_COLOR_ATTACHMENT1, drawn.albedo, 0);
+    glNamedFramebufferTexture(drawn.framebuffer, GL_DEPTH_ATTACHMENT, drawn.depth, 0);
+    const GLenum targets[] = {GL_COLOR_ATTACHMENT0, GL_COLOR_ATTACHMENT1};
+    glNamedFramebufferDrawBuffers(drawn.framebuffer, 2, targets);
+    GLuint no_vertices = 0;
+    glCreateVertexArrays(1, &no_vertices);
+    const GLuint program = make_program(vertex, fragment);
+    glProgramUniformMatrix4fv(program, 0, 1, GL_FALSE, &clip_from_world[0][0]);
+    glBindFramebuffer(GL_FRAMEBUFFER, drawn.framebuffer);
+    glViewport(0, 0, static_cast<GLsizei>(size.x), static_cast<GLsizei>(size.y));
+    glClear(GL_DEPTH_BUFFER_BIT);
+    glEnable(GL_DEPTH_TEST);
+    glUseProgram(program);
+    glBindVertexArray(no_vertices);
+    glDrawArrays(GL_TRIANGLE_STRIP, 0, 4);
+    return drawn;
+}
+
 }  // namespace host

@@ -11,7 +11,6 @@
 
 #include <candela/scene/animation.hpp>
 #include <glm/gtc/matrix_transform.hpp>
-#include <glm/gtc/type_ptr.hpp>
 
 namespace {
 
@@ -36,55 +35,18 @@ GLuint make_framebuffer(glm::uvec2 of_size) {
     return host::make_picture(of_size).framebuffer;
 }
 
-// The host draws the ground of its scene: depth, world-space normal and albedo.
-constexpr const char* ground_vertex = R"(
-layout(location = 0) uniform mat4 clip_from_world;
-void main() {
-    vec2 corner = vec2((gl_VertexID & 1) * 8 - 4, (gl_VertexID & 2) * 4 - 4);
-    gl_Position = clip_from_world * vec4(corner.x, 0.0, corner.y, 1.0);
-})";
-constexpr const char* ground_fragment = R"(
-layout(location = 0) out vec4 normal;
-layout(location = 1) out vec4 albedo;
-void main() {
-    normal = vec4(0.5, 1.0, 0.5, 0.0);
-    albedo = vec4(vec3(0.5), 1.0);
-})";
 constexpr const char* copy_fragment = R"(
 layout(binding = 0) uniform sampler2D radiance;
 layout(location = 0) uniform float factor;
 layout(location = 0) out vec4 result;
 void main() { result = factor * texelFetch(radiance, ivec2(gl_FragCoord.xy), 0); })";
 
-struct HostGbuffer {
-    GLuint depth = host::make_texture(picture_size, GL_DEPTH_COMPONENT32F);
-    GLuint normal = host::make_texture(picture_size, GL_RGBA8);
-    GLuint albedo = host::make_texture(picture_size, GL_RGBA8);
+struct HostGbuffer : host::Gbuffer {
     std::uint64_t drawings = 1;
 };
 
-/// With the depth state that is set.
 HostGbuffer draw_gbuffer(const glm::mat4& clip_from_world) {
-    const HostGbuffer gbuffer;
-    GLuint framebuffer = 0;
-    glCreateFramebuffers(1, &framebuffer);
-    glNamedFramebufferTexture(framebuffer, GL_COLOR_ATTACHMENT0, gbuffer.normal, 0);
-    glNamedFramebufferTexture(framebuffer, GL_COLOR_ATTACHMENT1, gbuffer.albedo, 0);
-    glNamedFramebufferTexture(framebuffer, GL_DEPTH_ATTACHMENT, gbuffer.depth, 0);
-    const GLenum targets[] = {GL_COLOR_ATTACHMENT0, GL_COLOR_ATTACHMENT1};
-    glNamedFramebufferDrawBuffers(framebuffer, 2, targets);
-    GLuint no_vertices = 0;
-    glCreateVertexArrays(1, &no_vertices);
-    const GLuint program = host::make_program(ground_vertex, ground_fragment);
-    glProgramUniformMatrix4fv(program, 0, 1, GL_FALSE, glm::value_ptr(clip_from_world));
-    glBindFramebuffer(GL_FRAMEBUFFER, framebuffer);
-    glViewport(0, 0, picture_size.x, picture_size.y);
-    glClear(GL_DEPTH_BUFFER_BIT);
-    glEnable(GL_DEPTH_TEST);
-    glUseProgram(program);
-    glBindVertexArray(no_vertices);
-    glDrawArrays(GL_TRIANGLE_STRIP, 0, 4);
-    return gbuffer;
+    return {host::draw_ground(clip_from_world, picture_size)};
 }
 
 void run_recipes(candela::Renderer& renderer, host::Scene& scene, host::Checks& checks) {

@@ -5,56 +5,11 @@
 #include "host.hpp"
 
 #include <glm/gtc/matrix_transform.hpp>
-#include <glm/gtc/type_ptr.hpp>
 
 namespace {
 
 constexpr glm::uvec2 size{64, 48};
 constexpr float pi = 3.14159265F;
-
-// The host draws the ground by itself: depth, world-space normal and albedo.
-constexpr const char* vertex = R"(
-layout(location = 0) uniform mat4 clip_from_world;
-void main() {
-    vec2 corner = vec2((gl_VertexID & 1) * 8 - 4, (gl_VertexID & 2) * 4 - 4);
-    gl_Position = clip_from_world * vec4(corner.x, 0.0, corner.y, 1.0);
-})";
-constexpr const char* fragment = R"(
-layout(location = 0) out vec4 normal;
-layout(location = 1) out vec4 albedo;
-void main() {
-    normal = vec4(0.5, 1.0, 0.5, 0.0);  // (0, 1, 0), stored without a sign
-    albedo = vec4(vec3(0.5), 1.0);
-})";
-
-struct HostFrame {
-    GLuint framebuffer = 0;
-    GLuint depth = host::make_texture(size, GL_DEPTH_COMPONENT32F);
-    GLuint normal = host::make_texture(size, GL_RGBA8);
-    GLuint albedo = host::make_texture(size, GL_RGBA8);
-};
-
-HostFrame draw_ground(const glm::mat4& clip_from_world) {
-    HostFrame frame;
-    glCreateFramebuffers(1, &frame.framebuffer);
-    glNamedFramebufferTexture(frame.framebuffer, GL_COLOR_ATTACHMENT0, frame.normal, 0);
-    glNamedFramebufferTexture(frame.framebuffer, GL_COLOR_ATTACHMENT1, frame.albedo, 0);
-    glNamedFramebufferTexture(frame.framebuffer, GL_DEPTH_ATTACHMENT, frame.depth, 0);
-    const GLenum targets[] = {GL_COLOR_ATTACHMENT0, GL_COLOR_ATTACHMENT1};
-    glNamedFramebufferDrawBuffers(frame.framebuffer, 2, targets);
-    GLuint no_vertices = 0;
-    glCreateVertexArrays(1, &no_vertices);
-    const GLuint program = host::make_program(vertex, fragment);
-    glProgramUniformMatrix4fv(program, 0, 1, GL_FALSE, glm::value_ptr(clip_from_world));
-    glBindFramebuffer(GL_FRAMEBUFFER, frame.framebuffer);
-    glViewport(0, 0, size.x, size.y);
-    glClear(GL_DEPTH_BUFFER_BIT);
-    glEnable(GL_DEPTH_TEST);
-    glUseProgram(program);
-    glBindVertexArray(no_vertices);
-    glDrawArrays(GL_TRIANGLE_STRIP, 0, 4);
-    return frame;
-}
 
 }  // namespace
 
@@ -72,7 +27,7 @@ int main() {
         const float aspect = static_cast<float>(size.x) / static_cast<float>(size.y);
         const glm::mat4 projection = glm::perspective(camera.vertical_fov, aspect, 0.1F, 10.0F);
         const glm::mat4 view = glm::lookAt(glm::vec3(0, 3, 0), glm::vec3(0), glm::vec3(0, 0, -1));
-        const HostFrame ground = draw_ground(projection * view);
+        const host::Gbuffer ground = host::draw_ground(projection * view, size);
 
         const host::Picture picture = host::make_picture(size);
         const candela::RenderView seen{
