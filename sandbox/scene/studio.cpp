@@ -48,16 +48,16 @@ glm::vec3 forward_of(const World& world) {
 }
 
 /// The world with the vertices of its deformed meshes in the meshes themselves, where SceneRays finds them.
-World with_shapes(World world) {
-    const World before = world;
-    for (const auto& [entity, instance, deformed] : before.view<MeshInstance, DeformedMesh>()) {
+World with_shapes(const World& world) {
+    World shaped = world;
+    for (const auto& [entity, instance, deformed] : world.view<MeshInstance, DeformedMesh>()) {
         Mesh mesh = *instance.mesh;
         for (std::size_t i = 0; i < mesh.primitives.size(); ++i) {
             mesh.primitives[i].vertices = (*deformed.vertices)[i];
         }
-        world.set(entity, MeshInstance{std::make_shared<const Mesh>(std::move(mesh))});
+        shaped.set(entity, MeshInstance{std::make_shared<const Mesh>(std::move(mesh))});
     }
-    return world;
+    return shaped;
 }
 
 }  // namespace

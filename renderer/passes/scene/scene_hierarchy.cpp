@@ -15,13 +15,11 @@ namespace {
 
 constexpr float rebuild_above = 1.5F;  // times the SAH cost at the last build
 
-/// The deformed vertices of a drawable; null: it has those of the mesh.
-const std::shared_ptr<const DeformedMesh::Vertices>& deformed_vertices(const SceneLayout::Drawable& drawable,
-                                                                       const Deformations& deformed) {
-    static const std::shared_ptr<const DeformedMesh::Vertices> none;
-    if (deformed.empty()) return none;
-    const auto found = deformed.find(drawable.item);
-    return found == deformed.end() ? none : found->second.vertices;
+/// The deformed vertices of an item; null: it has those of the mesh.
+std::shared_ptr<const DeformedMesh::Vertices> deformed_vertices(const Deformations& deformed,
+                                                                std::uint32_t item) {
+    const Deformation* const found = find_deformation(deformed, item);
+    return found == nullptr ? nullptr : found->vertices;
 }
 
 /// The same drawable, in the way that it was last made from.
@@ -30,7 +28,7 @@ bool is_made_from(const ObjectHierarchy::Source& source, const SceneLayout& layo
     return source.is_made && source.material == drawable.material &&
            source.mirrored == layout.geometry.items[drawable.item].mirrored &&
            source.world == placement.world[drawable.item] &&
-           source.vertices == deformed_vertices(drawable, placement.deformed);
+           source.vertices == deformed_vertices(placement.deformed, drawable.item);
 }
 
 double area_of(std::span<const Triangle> triangles) {
@@ -176,8 +174,6 @@ void SceneHierarchy::take_over(const SceneLayout& layout) {
 
 void SceneHierarchy::update(const SceneLayout& layout, const ScenePlacement& placement, bool other_layout) {
     changed_.clear();
-    refitted_.clear();
-    built_.clear();
     std::vector<std::uint32_t> candidates;
     if (other_layout) {
         take_over(layout);
@@ -187,13 +183,13 @@ void SceneHierarchy::update(const SceneLayout& layout, const ScenePlacement& pla
         candidates = moved_solids(layout, placement_, placement);
     }
     placement_ = placement;
-    fit_objects(layout, placement, candidates);
-    fit_top();
+    fit_top(fit_objects(layout, placement, candidates));
     add_up(layout, other_layout);
 }
 
-void SceneHierarchy::fit_objects(const SceneLayout& layout, const ScenePlacement& placement,
-                                 const std::vector<std::uint32_t>& candidates) {
+SceneHierarchy::Fitted SceneHierarchy::fit_objects(const SceneLayout& layout, const ScenePlacement& placement,
+                                                   const std::vector<std::uint32_t>& candidates) {
+    Fitted fitted;
     for (const std::uint32_t i : candidates) {
         ObjectHierarchy& object = *objects[i];
         const SceneLayout::Drawable& drawable = layout.drawables[i];
@@ -205,10 +201,10 @@ void SceneHierarchy::fit_objects(const SceneLayout& layout, const ScenePlacement
                          .material = drawable.material,
                          .mirrored = layout.geometry.items[drawable.item].mirrored,
                          .world = placement.world[drawable.item],
-                         .vertices = deformed_vertices(drawable, placement.deformed)};
+                         .vertices = deformed_vertices(placement.deformed, drawable.item)};
         const std::vector<Triangle> triangles =
             place_triangles(layout, drawable, vertices_of(drawable, placement.deformed), object.source.world);
-        (fit(object, triangles) ? built_ : refitted_).push_back(i);
+        (fit(object, triangles) ? fitted.built : fitted.refitted).push_back(i);
         object.area = area_of(triangles);
         // The second texture coordinates follow as triangles of their own.
         const std::uint32_t records = traces_second_uvs(*drawable.primitive) ? 2 : 1;
@@ -216,16 +212,17 @@ void SceneHierarchy::fit_objects(const SceneLayout& layout, const ScenePlacement
         object.nodes.uploaded = object.triangles.uploaded = false;
         changed_.push_back(i);
     }
+    return fitted;
 }
 
-void SceneHierarchy::fit_top() {
-    const bool builds = built_.size() > objects.size() / 4;
+void SceneHierarchy::fit_top(const Fitted& fitted) {
+    const bool builds = fitted.built.size() > objects.size() / 4;
     if (!builds) {
-        for (const std::uint32_t i : built_) {
+        for (const std::uint32_t i : fitted.built) {
             top.remove(i);
             top.insert(placed_, i);
         }
-        top.refit(placed_, refitted_);
+        top.refit(placed_, fitted.refitted);
     }
     if (builds || top.is_worn()) top.build(placed_);
 }

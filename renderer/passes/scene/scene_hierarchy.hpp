@@ -109,11 +109,16 @@ class SceneHierarchy {
         std::uint64_t triangles = 0;
     };
     static constexpr std::size_t block_size = 64;
+    /// Numbers of the objects whose hierarchies have other boxes.
+    struct Fitted {
+        std::vector<std::uint32_t> refitted;  // with the topology that they had
+        std::vector<std::uint32_t> built;
+    };
 
     void take_over(const SceneLayout& layout);
-    void fit_objects(const SceneLayout& layout, const ScenePlacement& placement,
-                     const std::vector<std::uint32_t>& candidates);
-    void fit_top();
+    [[nodiscard]] Fitted fit_objects(const SceneLayout& layout, const ScenePlacement& placement,
+                                     const std::vector<std::uint32_t>& candidates);
+    void fit_top(const Fitted& fitted);
     void add_up(const SceneLayout& layout, bool all);
     void add_up_block(const SceneLayout& layout, std::size_t block);
 
@@ -121,9 +126,7 @@ class SceneHierarchy {
     std::vector<PlacedBvh> placed_;     // by object
     ScenePlacement placement_;          // in the last update
     std::vector<std::uint32_t> changed_;
-    std::vector<std::uint32_t> refitted_;  // of these: with the topology that they had
-    std::vector<std::uint32_t> built_;     // of these: the others
-    std::vector<Sums> sums_;               // by block of objects
+    std::vector<Sums> sums_;  // by block of objects
 };
 
 }  // namespace candela

@@ -40,6 +40,11 @@ struct Deformation {
 };
 /// By item; only of those that are deformed.
 using Deformations = std::map<std::uint32_t, Deformation>;
+/// Null if the item is not deformed.
+[[nodiscard]] inline const Deformation* find_deformation(const Deformations& deformed, std::uint32_t item) {
+    const auto found = deformed.find(item);
+    return found == deformed.end() ? nullptr : &found->second;
+}
 
 /// Where the surfaces of the items are.
 struct ScenePlacement {

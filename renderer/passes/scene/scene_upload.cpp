@@ -26,11 +26,6 @@ struct Gathered {
     ValueHandle<Deformations> deformed;
 };
 
-const Deformation* find(const Deformations& deformed, std::uint32_t item) {
-    const auto found = deformed.find(item);
-    return found == deformed.end() ? nullptr : &found->second;
-}
-
 /// Changed in place, so that it cannot be compared.
 struct KeptList {
     std::shared_ptr<SceneList> list;
@@ -69,14 +64,13 @@ struct SceneStore {
 /// What determines the drawing order. One call draws all drawables with equal keys, unless they are blended.
 struct DrawKey {
     AlphaMode alpha;
-    std::uint32_t base_colour;  // number of the image
     bool double_sided;
     bool mirrored;
     bool emits;
     MaterialImages images;
 
     [[nodiscard]] auto order() const {
-        return std::tie(alpha, base_colour, double_sided, mirrored, emits, images);
+        return std::tie(alpha, images[base_colour_slot], double_sided, mirrored, emits, images);
     }
     [[nodiscard]] bool operator<(const DrawKey& other) const { return order() < other.order(); }
 };
@@ -123,9 +117,8 @@ class Sorter {
         if (at >= by_material_.size()) by_material_.resize(at + 1);
         if (by_material_[at] == nullptr) {
             const Material& material = *drawable.primitive->material;
-            const MaterialImages& images = store_.materials.images_of(drawable.material);
-            by_material_[at] = &buckets_[{drawn_alpha(material), images[base_colour_slot],
-                                          material.double_sided, mirrored, emits(material), images}];
+            by_material_[at] = &buckets_[{drawn_alpha(material), material.double_sided, mirrored,
+                                          emits(material), store_.materials.images_of(drawable.material)}];
         }
         return *by_material_[at];
     }
@@ -135,11 +128,6 @@ class Sorter {
     Buckets buckets_;
     std::vector<std::vector<SceneLayout::Drawable>*> by_material_;  // and whether mirrored
 };
-
-std::uint32_t count_solids(const std::vector<SceneLayout::Drawable>& drawables) {
-    return static_cast<std::uint32_t>(std::ranges::count_if(
-        drawables, [](const auto& drawable) { return !is_seen_through(*drawable.primitive->material); }));
-}
 
 /// Appends the drawables of a bucket to the layout, with their groups.
 void append(SceneLayout& layout, const DrawKey& key, const std::vector<SceneLayout::Drawable>& bucket,
@@ -151,6 +139,7 @@ void append(SceneLayout& layout, const DrawKey& key, const std::vector<SceneLayo
     layout.drawables.insert(layout.drawables.end(), bucket.begin(), bucket.end());
     if (key.alpha != AlphaMode::blend) {
         layout.groups.push_back(std::move(group));
+        layout.solid_count = static_cast<std::uint32_t>(layout.drawables.size());
         return;
     }
     group.draw_count = 1;
@@ -177,7 +166,6 @@ SceneLayout upload_scene(const Gpu& gpu, Execution& run, const SceneData& out, c
     for (const auto& [key, bucket] : Sorter(store).sort(geometry)) {
         append(layout, key, bucket, store.materials);
     }
-    layout.solid_count = count_solids(layout.drawables);
     index_by_item(layout);
     for (const SceneLayout::Drawable& drawable : layout.drawables) {
         if (geometry.items[drawable.item].deformed) store.meshes.add_deformed(drawable);
@@ -265,17 +253,17 @@ std::vector<glm::vec2> second_uvs_of(const SceneLayout& layout) {
 }  // namespace
 
 std::span<const Vertex> vertices_of(const SceneLayout::Drawable& drawable, const Deformations& deformed) {
-    const Deformation* const found = find(deformed, drawable.item);
+    const Deformation* const found = find_deformation(deformed, drawable.item);
     return found == nullptr ? drawable.primitive->vertices : (*found->vertices)[drawable.index_in_mesh];
 }
 
 const Box& bounds_of(const SceneLayout::Drawable& drawable, const Deformations& deformed) {
-    const Deformation* const found = find(deformed, drawable.item);
+    const Deformation* const found = find_deformation(deformed, drawable.item);
     return found == nullptr ? drawable.bounds : found->bounds[drawable.index_in_mesh];
 }
 
 std::span<const Box> parts_of(const SceneLayout::Drawable& drawable, const Deformations& deformed) {
-    if (drawable.parts && find(deformed, drawable.item) == nullptr) return *drawable.parts;
+    if (drawable.parts && find_deformation(deformed, drawable.item) == nullptr) return *drawable.parts;
     return {&bounds_of(drawable, deformed), 1};
 }
 
@@ -300,8 +288,8 @@ std::vector<std::uint32_t> moved_solids(const SceneLayout& layout, const ScenePl
                                         const ScenePlacement& now) {
     std::vector<std::uint32_t> moved = moved_drawables(layout, before.world, now.world);
     for (const auto& [item, deformation] : now.deformed) {
-        const auto last = before.deformed.find(item);
-        if (last != before.deformed.end() && last->second.vertices == deformation.vertices) continue;
+        const Deformation* const last = find_deformation(before.deformed, item);
+        if (last != nullptr && last->vertices == deformation.vertices) continue;
         const std::span<const std::uint32_t> drawables = layout.drawables_of(item);
         moved.insert(moved.end(), drawables.begin(), drawables.end());
     }

@@ -36,8 +36,8 @@ struct DividedCells {
 
 bool has_moved(const ScenePlacement& before, const ScenePlacement& now, std::uint32_t item) {
     const auto shape_in = [&](const ScenePlacement& placement) {
-        const auto found = placement.deformed.find(item);
-        return found == placement.deformed.end() ? nullptr : found->second.vertices.get();
+        const Deformation* const deformed = find_deformation(placement.deformed, item);
+        return deformed == nullptr ? nullptr : deformed->vertices.get();
     };
     return before.world[item] != now.world[item] || shape_in(before) != shape_in(now);
 }

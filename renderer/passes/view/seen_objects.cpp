@@ -42,9 +42,8 @@ InView in_view(const Box& box, const glm::mat4& clip_from_box) {
 std::vector<std::uint32_t> SeenObjects::update(const KeptTop& top, std::size_t count,
                                                const glm::mat4& clip_from_world, bool other_objects) {
     if (other_objects) seen_.assign(count, false);
-    if (other_objects || std::exchange(topology_, top.topology()) != top.topology()) {
+    if (other_objects || topology_ != top.topology()) {
         states_.assign(top.top().bvh.nodes.size(), InView::outside);
-        leaf_seen_.assign(top.top().leaves.size(), false);
         leaves_.assign(count, 0);
         touched_.resize(count);
         std::iota(touched_.begin(), touched_.end(), 0U);
@@ -75,11 +74,9 @@ void SeenObjects::visit(const TopBvh& top, std::uint32_t node, InView above,
         visit(top, box.first + 1, now, clip_from_world);
         return;
     }
-    const std::uint32_t leaf = top.bvh.order[box.first];
     const bool seen = now != InView::outside;
-    if (leaf_seen_[leaf] == seen) return;
-    leaf_seen_[leaf] = seen;
-    const std::uint32_t object = top.leaves[leaf].object;
+    if (seen == (before != InView::outside)) return;
+    const std::uint32_t object = top.leaves[top.bvh.order[box.first]].object;
     leaves_[object] += seen ? 1U : ~0U;
     touched_.push_back(object);
 }

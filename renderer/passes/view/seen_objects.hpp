@@ -36,7 +36,6 @@ class SeenObjects {
     void visit(const TopBvh& top, std::uint32_t node, InView above, const glm::mat4& clip_from_world);
 
     std::vector<InView> states_;          // by node of the top
-    std::vector<bool> leaf_seen_;         // by leaf of the top
     std::vector<std::uint32_t> leaves_;   // by object: how many of its leaves are seen
     std::vector<bool> seen_;              // by object
     std::vector<std::uint32_t> touched_;  // objects with leaves that have come or gone
