@@ -70,7 +70,7 @@ struct Light {
     float pad1 DEFAULT(0.0);
 };
 
-// What all lights have in common. A uniform block: shaders/lights/light_list.glsl.
+// What all lights have in common. A uniform block: shaders/lights/light_constants.glsl.
 struct LightConstants {
     uint count;  // of lights
     uint pad0 DEFAULT(0u);

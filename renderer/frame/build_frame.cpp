@@ -225,10 +225,8 @@ void light_receivers(FrameGraph& graph, Gpu& gpu, const Configuration& configura
                      const std::optional<SharedVpls>& vpls, FrameHandles& frame) {
     frame.receivers = graph.import_value<std::vector<Receiver>>("host's receivers");
     if (!shows_light(configuration.show)) return;
-    Lighting lighting{.lights = lit.lights, .show = configuration.show};
-    if (configuration.shadows.enabled) lighting.shadow_rays = lit.tracing;
-    if (vpls) lighting.vpls = vpls->light;
-    frame.received = add_receivers(graph, gpu, *frame.receivers, lighting);
+    frame.received =
+        add_receivers(graph, gpu, *frame.receivers, lighting_of_points(configuration, lit, vpls));
     graph.add("keep-received-light", [&](Pass& pass) {
         pass.side_effect();
         pass.read(*frame.received, Usage::storage);

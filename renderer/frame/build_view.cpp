@@ -15,6 +15,7 @@
 #include "renderer/passes/mirror/mirror_rays.hpp"
 #include "renderer/passes/output/accumulate.hpp"
 #include "renderer/passes/output/tone_map.hpp"
+#include "renderer/passes/receivers/point_lighting.hpp"
 #include "renderer/passes/shading/deferred.hpp"
 #include "renderer/passes/shading/emission.hpp"
 #include "renderer/passes/shading/forward.hpp"
@@ -223,7 +224,7 @@ void set_vpls(ViewFrame& parts, const Vpls& vpls) {
     if (lit.sky) parts.sky_patches = lit.sky->patches;
 }
 
-ViewFrame first_parts(const SharedFrame& shared, std::size_t index, const ViewData& view,
+ViewFrame first_parts(const Gpu& gpu, const SharedFrame& shared, std::size_t index, const ViewData& view,
                       const Surfaces& surfaces) {
     ViewFrame parts{.index = index,
                     .size = view.size,
@@ -235,6 +236,10 @@ ViewFrame first_parts(const SharedFrame& shared, std::size_t index, const ViewDa
                     .gloss = surfaces.gloss,
                     .bumps = surfaces.bumps,
                     .lights = shared.lit.lights.buffer};
+    if (shows_light(shared.configuration.show)) {
+        parts.lighting =
+            make_point_lighting(gpu, lighting_of_points(shared.configuration, shared.lit, shared.vpls));
+    }
     if (shared.vpls) set_vpls(parts, shared.vpls->light.vpls);
     return parts;
 }
@@ -322,6 +327,14 @@ void add_sources(FrameGraph& graph, Gpu& gpu, const SharedFrame& shared, const S
 
 }  // namespace
 
+Lighting lighting_of_points(const Configuration& configuration, const LitScene& lit,
+                            const std::optional<SharedVpls>& vpls) {
+    Lighting lighting{.lights = lit.lights, .show = configuration.show};
+    if (configuration.shadows.enabled) lighting.shadow_rays = lit.tracing;
+    if (vpls) lighting.vpls = vpls->light;
+    return lighting;
+}
+
 void build_view(FrameGraph& graph, Gpu& gpu, const SharedFrame& shared, const ViewShape& shape,
                 std::size_t index, ViewHandles& out) {
     const Configuration& configuration = shared.configuration;
@@ -345,7 +358,7 @@ void build_view(FrameGraph& graph, Gpu& gpu, const SharedFrame& shared, const Vi
 
     const Surfaces found = out.host ? read_surfaces(graph, gpu, shared, view, out)
                                     : find_surfaces(graph, gpu, shared, seen, view, out, asked);
-    ViewFrame parts = first_parts(shared, index, view, found);
+    ViewFrame parts = first_parts(gpu, shared, index, view, found);
     extend(graph, shared, ExtensionPlace::after_surfaces, parts, out);
 
     const bool bounds_lists = out.host || path.surfaces != SurfaceStage::forward;

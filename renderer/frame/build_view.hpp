@@ -36,6 +36,10 @@ struct SharedFrame {
     std::span<const Extension> extensions;
 };
 
+/// What lights points that are no surfaces of a view.
+[[nodiscard]] Lighting lighting_of_points(const Configuration& configuration, const LitScene& lit,
+                                          const std::optional<SharedVpls>& vpls);
+
 /// Declares the passes of view number `index`, from its camera to its target. Sets the results in `out`.
 void build_view(FrameGraph& graph, Gpu& gpu, const SharedFrame& shared, const ViewShape& shape,
                 std::size_t index, ViewHandles& out);

@@ -79,7 +79,9 @@ std::string map_line(const std::string& line, std::span<const std::string> files
 
 class Assembler {
  public:
-    explicit Assembler(const ShaderLibrary& library) : library_(library) {}
+    /// `numbers_lines`: with #line directives.
+    Assembler(const ShaderLibrary& library, bool numbers_lines)
+        : library_(library), numbers_lines_(numbers_lines) {}
 
     /// Appends a file; each file that it includes takes the place of its #include line.
     void append(const std::string& name) {
@@ -101,6 +103,11 @@ class Assembler {
     }
 
     void prologue(std::string_view text) { source_.text += text; }
+    void define(std::span<const Define> defines) {
+        for (const Define& define : defines) {
+            prologue(fmt::format("#define {} {}\n", define.name, define.value));
+        }
+    }
 
     [[nodiscard]] ShaderSource take() { return std::move(source_); }
 
@@ -118,10 +125,11 @@ class Assembler {
     }
 
     void begin_line(std::size_t line, std::size_t file) {
-        source_.text += fmt::format("#line {} {}\n", line, file);
+        if (numbers_lines_) source_.text += fmt::format("#line {} {}\n", line, file);
     }
 
     const ShaderLibrary& library_;
+    bool numbers_lines_;
     ShaderSource source_;
     std::vector<std::string> open_;
 };
@@ -150,13 +158,19 @@ std::string ShaderLibrary::load(std::string_view name) const {
 }
 
 ShaderSource assemble(const ShaderLibrary& library, std::string_view name, std::span<const Define> defines) {
-    Assembler assembler(library);
+    Assembler assembler(library, true);
     assembler.prologue("#version 450 core\n");
-    for (const Define& define : defines) {
-        assembler.prologue(fmt::format("#define {} {}\n", define.name, define.value));
-    }
+    assembler.define(defines);
     assembler.append(std::string(name));
     return assembler.take();
+}
+
+std::string assemble_part(const ShaderLibrary& library, std::string_view name,
+                          std::span<const Define> defines) {
+    Assembler assembler(library, false);
+    assembler.define(defines);
+    assembler.append(std::string(name));
+    return assembler.take().text;
 }
 
 std::string map_log(std::string_view log, std::span<const std::string> files) {

@@ -55,6 +55,10 @@ struct ShaderSource {
 [[nodiscard]] ShaderSource assemble(const ShaderLibrary& library, std::string_view name,
                                     std::span<const Define> defines = {});
 
+/// The same as a part of a host's shader: without #version and #line.
+[[nodiscard]] std::string assemble_part(const ShaderLibrary& library, std::string_view name,
+                                        std::span<const Define> defines = {});
+
 /// Replaces the file numbers in a driver's messages by names. Mesa's "2:42(10): error: ..." becomes
 /// "shaders/shading/lighting.glsl:42: error: ...", and so does NVIDIA's "2(42) : error ...". Lines of another
 /// form do not change.

@@ -53,6 +53,18 @@ std::string label_of_vertices(const Gpu& gpu) {
     return fmt::format("no vertices of {}", static_cast<const void*>(&gpu));
 }
 
+/// `defined`: NAME for NAME as 1, or NAME=VALUE.
+std::vector<gl::Define> defines_of(const std::vector<std::string>& defined) {
+    std::vector<gl::Define> defines;
+    defines.reserve(defined.size());
+    for (const std::string& word : defined) {
+        const std::size_t equals = word.find('=');
+        defines.push_back({.name = word.substr(0, equals),
+                           .value = equals == std::string::npos ? "1" : word.substr(equals + 1)});
+    }
+    return defines;
+}
+
 }  // namespace
 
 void require_limits(const gl::Limits& limits) {
@@ -114,14 +126,12 @@ const gl::Program& Gpu::program(const std::vector<std::string>& stages,
     ProgramKey key(stages, defined);
     const auto found = programs_.find(key);
     if (found != programs_.end()) return found->second;
-    std::vector<gl::Define> defines;
-    defines.reserve(defined.size());
-    for (const std::string& word : defined) {
-        const std::size_t equals = word.find('=');
-        defines.push_back({.name = word.substr(0, equals),
-                           .value = equals == std::string::npos ? "1" : word.substr(equals + 1)});
-    }
-    return programs_.emplace(std::move(key), gl::compile(device_, shaders_, stages, defines)).first->second;
+    return programs_.emplace(std::move(key), gl::compile(device_, shaders_, stages, defines_of(defined)))
+        .first->second;
+}
+
+std::string Gpu::source_part(std::string_view file, const std::vector<std::string>& defined) const {
+    return gl::assemble_part(shaders_, file, defines_of(defined));
 }
 
 void Gpu::set_target(const Target& target) const {

@@ -4,6 +4,7 @@
 #include <map>
 #include <optional>
 #include <string>
+#include <string_view>
 #include <utility>
 #include <vector>
 
@@ -48,6 +49,10 @@ class Gpu {
     /// first request, then cached. The reference is valid as long as the Gpu. Throws gl::ProgramError.
     [[nodiscard]] const gl::Program& program(const std::vector<std::string>& stages,
                                              const std::vector<std::string>& defined = {});
+
+    /// Source of a shader file with its includes and the same kind of names, as a part of a host's shader.
+    [[nodiscard]] std::string source_part(std::string_view file,
+                                          const std::vector<std::string>& defined) const;
 
     /// A vertex array for candela::Vertex (binding 0) and instance indices (binding 1): see draw_scene.hpp.
     [[nodiscard]] gl::VertexArray& mesh_vertices() { return mesh_vertices_; }

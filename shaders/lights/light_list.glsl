@@ -1,10 +1,9 @@
 // Which lights a surface evaluates: all of them, or the list of its cell (LIGHT_LIST_CELLS).
 #include "bindings.glsl"
 #include "lights/light_cells.glsl"
+#include "lights/light_constants.glsl"
 #include "types.glsl"
 #include "view/view.glsl"
-
-layout(std140, binding = UNIFORMS_LIGHTS) uniform LightsInCommon { LightConstants light_constants; };
 
 #ifdef LIGHT_LIST_CELLS
 

@@ -124,12 +124,25 @@ std::string ending(GLenum stage) {
     }
 }
 
+/// Notes a host's fragment shader with the functions that light points.
+Extension lighting_points() {
+    Extension extension{.name = "points", .place = ExtensionPlace::after_shading};
+    extension.declare = [](FrameGraph&, ViewFrame& frame) {
+        if (!frame.lighting) return;
+        sources.emplace(GL_FRAGMENT_SHADER, "#version 450 core\n" + frame.lighting->glsl() + R"(
+layout(location = 0) out vec3 lit;
+void main() { lit = candela_irradiance(vec3(0.0), vec3(0.0, 1.0, 0.0), 0u); })");
+    };
+    return extension;
+}
+
 }  // namespace
 
 TEST_CASE_FIXTURE(GlFixture, "glslang compiles every variant of every program") {
     TestedRenderer renderer(noting(context->get_proc()));
     Configuration configuration;
     configuration.refinement.enabled = true;
+    REQUIRE(renderer.extend(lighting_points()).empty());
     const auto configure_each = [&](VplPlacement placement, Show show) {
         configuration.vpls.placement = placement;
         configuration.show = show;

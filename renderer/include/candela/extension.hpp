@@ -9,6 +9,7 @@
 
 #include <candela/api.hpp>
 #include <candela/graph/frame_graph.hpp>
+#include <candela/point_lighting.hpp>
 #include <candela/view.hpp>
 
 namespace candela {
@@ -58,7 +59,8 @@ struct ViewFrame {
     /// alone.
     std::optional<TextureHandle> indirect_flow{};
     std::optional<TextureHandle> radiance{};
-    BufferHandle<gpu::Light> lights{};  ///< the scene's lights: `Light` as in glsl_types()
+    std::optional<PointLighting> lighting{};  ///< for the host's shaders; none if no light is shown
+    BufferHandle<gpu::Light> lights{};        ///< the scene's lights: `Light` as in glsl_types()
     // The VPLs, as in glsl_types(): those on paths; or surfels, surfels that emit light, patches of the sky.
     std::optional<BufferHandle<gpu::TracedVpl>> traced_vpls{};
     std::optional<BufferHandle<gpu::LitSurfel>> lit_surfels{};

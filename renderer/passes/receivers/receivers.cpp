@@ -1,6 +1,6 @@
 #include "renderer/passes/receivers/receivers.hpp"
 
-#include <string>
+#include <vector>
 
 #include <candela/graph/execute.hpp>
 #include "renderer/gpu/compute_steps.hpp"
@@ -24,15 +24,6 @@ BufferHandle<gpu::LightReceiver> add_upload(FrameGraph& graph, Gpu& gpu,
         });
         return uploaded;
     });
-}
-
-std::vector<std::string> variant_of(const Lighting& lighting) {
-    std::vector<std::string> words;
-    if (lighting.shadow_rays) words.emplace_back("SHADOW_RAYS");
-    if (!lighting.vpls) return words;
-    words.emplace_back("VPLS");
-    for (std::string& word : vpl_light_variant(*lighting.vpls)) words.push_back(std::move(word));
-    return words;
 }
 
 /// The dispatches that sum the lights, then those that add the VPLs.
@@ -60,16 +51,15 @@ ReceivedLight add_receivers(FrameGraph& graph, Gpu& gpu, ValueHandle<std::vector
         read_lighting(pass, lighting);
         const auto received = pass.write(growing_buffer<glm::vec4>(graph, "received light"),
                                          {Usage::storage, BINDING_RECEIVED});
-        const gl::Program& program = gpu.program({"receivers/receiver_light.comp"}, variant_of(lighting));
+        const gl::Program& program =
+            gpu.program({"receivers/receiver_light.comp"}, lighting_variant(lighting));
         pass.run([=, &gpu, &program](Execution& run) {
             const auto count = static_cast<std::uint32_t>(run.value(receivers).size());
             run.reserve(received, count);
-            const auto lights = static_cast<std::uint32_t>(run.value(lighting.lights.table).entries.size());
-            const gl::Uniforms counts{{"receiver_count", count},
-                                      {"light_count", shows_direct(lighting.show) ? lights : 0}};
             ComputeSteps steps(gpu);
             for (const gl::Uniforms& part : parts_of(run, lighting)) {
-                steps.run(program, {groups(count, RECEIVER_GROUP)}, part + counts);
+                steps.run(program, {groups(count, RECEIVER_GROUP)},
+                          part + gl::Uniforms{{"receiver_count", count}});
             }
         });
         return received;
