@@ -6,6 +6,7 @@
 #include <cstdlib>
 
 #include "host.hpp"
+#include "particles.hpp"
 
 #include "recipes_includes.inc"
 
@@ -63,6 +64,9 @@ void run_recipes(candela::Renderer& renderer, host::Scene& scene, host::Checks& 
     const GLuint framebuffer = picture.framebuffer;
     const candela::Target target{framebuffer, size};
     const std::vector<glm::vec3> particles{{0, 0.5F, 0}, {1, 0.5F, 0}};
+    using host::draw_particles;
+    using host::particle_program;
+    using host::Sparks;
 
     const glm::mat4 projection =
         glm::perspective(world.get<candela::Camera>(camera).vertical_fov,
