@@ -220,6 +220,7 @@ void GraphRuntime::begin_pass(std::uint32_t position) {
         targets.size = slot.storage.texture.size;
         if (target.depth) {
             targets.depth = slot.object;
+            targets.writes_depth = target.written;
         } else {
             colours_.push_back(slot.object);
         }

@@ -86,6 +86,7 @@ void GraphBackend::begin_pass(std::string_view name, std::uint32_t index, const 
     in_host_pass_ = host_passes_.contains(name);
     timer_.begin_pass(index);
     device_->reset_raster_state();
+    if (targets != nullptr) device_->set_raster_state({.writes_depth = targets->writes_depth});
 }
 
 void GraphBackend::end_pass() {

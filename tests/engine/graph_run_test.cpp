@@ -399,10 +399,25 @@ TEST_CASE_FIXTURE(
                                                   "begin count", "end", "begin show", "end"});
     CHECK(backend.targets.colour == std::vector<ObjectId>{70});
     CHECK(backend.targets.depth == 71);
+    CHECK(backend.targets.writes_depth);
     CHECK(backend.targets.size == colour.size);
     backend.log.clear();
     (void)run();
     CHECK(backend.log == std::vector<std::string>{"barrier storage", "begin show", "end"});
+}
+
+TEST_CASE_FIXTURE(GraphFixture, "graph run: a pass that only reads depth does not write it") {
+    const TextureHandle depth = graph.add("draw", [&](Pass& pass) {
+        return pass.write(graph.texture("depth", {colour.size, Format::depth32f}), Usage::depth_target);
+    });
+    graph.add("test", [&](Pass& pass) {
+        pass.side_effect();
+        pass.read(depth, Usage::depth_target);
+    });
+    switch_to();
+    (void)run();
+    CHECK(backend.targets.depth != 0);
+    CHECK_FALSE(backend.targets.writes_depth);
 }
 
 TEST_CASE_FIXTURE(GraphFixture, "graph run: CPU time is measured only if requested") {

@@ -28,6 +28,7 @@ class RecordingBackend final : public Backend {
         std::vector<ObjectId> colour;
         ObjectId depth = 0;
         glm::uvec2 size{0};
+        bool writes_depth = false;
     };
 
     ObjectId create_texture(std::string_view name, const TextureDesc& desc) override {
@@ -52,7 +53,12 @@ class RecordingBackend final : public Backend {
         log.push_back("begin " + std::string(name));
         targets = {};
         bound.clear();
-        if (given) targets = {{given->colour.begin(), given->colour.end()}, given->depth, given->size};
+        if (given) {
+            targets = {{given->colour.begin(), given->colour.end()},
+                       given->depth,
+                       given->size,
+                       given->writes_depth};
+        }
         ++open_passes;
     }
     void end_pass() override {

@@ -88,7 +88,7 @@ TEST_CASE_FIXTURE(GlFixture, "a pass draws into its targets, from a known state"
     device.gl().Enable(GL_BLEND);
     device.gl().DepthMask(GL_FALSE);
 
-    const PassTargets targets{.colour = colours, .depth = depth, .size = {4, 2}};
+    PassTargets targets{.colour = colours, .depth = depth, .writes_depth = true, .size = {4, 2}};
     backend.begin_pass("pass", 3, &targets);
     CHECK(device.gl().IsEnabled(GL_DEPTH_TEST) == GL_FALSE);
     CHECK(device.gl().IsEnabled(GL_BLEND) == GL_FALSE);
@@ -105,6 +105,13 @@ TEST_CASE_FIXTURE(GlFixture, "a pass draws into its targets, from a known state"
 
     CHECK(backend.texture(colours[0]).read_floats() == std::vector<float>(8, 1.0F));
     CHECK(backend.texture(colours[1]).read_floats() == std::vector<float>(8, 2.0F));
+    CHECK(backend.texture(depth).read_floats() == std::vector<float>(8, 0.5F));
+
+    targets.writes_depth = false;
+    backend.begin_pass("tests depth", 4, &targets);
+    const float other = 0.25F;
+    device.gl().ClearBufferfv(GL_DEPTH, 0, &other);
+    backend.end_pass();
     CHECK(backend.texture(depth).read_floats() == std::vector<float>(8, 0.5F));
 }
 

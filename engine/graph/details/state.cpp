@@ -34,7 +34,7 @@ Step make_step(const Declaration& declared, const Plan& plan, std::uint32_t posi
         if (!history && !replaces && plan.writer[needed] != pass) step.inputs.push_back({needed});
         const bool depth = access.usage == Usage::depth_target;
         if (kind == ResourceKind::texture && (depth || access.usage == Usage::colour_target)) {
-            step.targets.push_back({slot, depth});
+            step.targets.push_back({slot, depth, access.write});
         }
         if (access.point != Binding::unbound || access.usage == Usage::indirect) {
             step.bound.push_back({access.resource, {access.usage, access.point}});

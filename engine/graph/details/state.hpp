@@ -59,6 +59,7 @@ struct Revision {
 struct Target {
     std::uint32_t slot;
     bool depth;
+    bool written;
 };
 
 /// What the back end binds for a pass.

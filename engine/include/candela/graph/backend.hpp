@@ -41,6 +41,7 @@ inline constexpr auto all_barriers = static_cast<Barrier>((1U << 10U) - 1);
 struct PassTargets {
     std::span<const ObjectId> colour;  ///< in the order of declaration
     ObjectId depth = 0;                ///< 0: none
+    bool writes_depth = false;         ///< else the pass has declared that it only tests against it
     glm::uvec2 size{0};                ///< texels
 };
 
@@ -61,7 +62,7 @@ class CANDELA_API Backend {
     virtual void barrier(Barrier bits) = 0;
     /// Called before each pass that runs; end_pass is called after it, also if the pass throws. `index` is
     /// the position of the pass in the execution order. `targets` is null for a pass without attachments and
-    /// valid until end_pass.
+    /// valid until end_pass. Depth writes should be off at first where the pass only reads depth.
     virtual void begin_pass(std::string_view name, std::uint32_t index, const PassTargets* targets) = 0;
     virtual void end_pass() = 0;
     /// Binds an object for the shaders of the pass that has begun, as its declaration says (see Binding).
