@@ -1,4 +1,4 @@
-# What all components of the package have in common: engine, import, renderer, headless.
+# What all components of the package have in common: engine, import, renderer, headless, tools.
 
 include(CMakePackageConfigHelpers)
 include(GNUInstallDirs)
@@ -84,6 +84,9 @@ function(candela_install_package)
     endif()
     if(TARGET candela-headless)
         candela_install_pkgconfig(headless REQUIRES candela-renderer PRIVATE ${fmt} LIBRARIES -ldl)
+    endif()
+    if(TARGET candela-tools)
+        candela_install_pkgconfig(tools REQUIRES candela-renderer PRIVATE ${fmt} stb LIBRARIES -ltinyexr)
     endif()
 
     set(CANDELA_STATIC ON)

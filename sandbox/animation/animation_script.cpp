@@ -14,9 +14,9 @@
 #include <glm/geometric.hpp>
 #include <glm/trigonometric.hpp>
 
+#include <candela/tools/output_file.hpp>
 #include "sandbox/candela_private.hpp"
 #include "sandbox/files/input_file.hpp"
-#include "sandbox/files/output_file.hpp"
 #include "sandbox/scene/scene.hpp"
 
 namespace candela::sandbox {
@@ -248,7 +248,7 @@ Script load_script(const fs::path& file_or_name) {
 std::optional<fs::path> scene_of(const Script& script) {
     if (!script.scene) return std::nullopt;
     const fs::path scene = *script.scene;
-    const std::string extension = lower_extension(scene);
+    const std::string extension = tools::lower_extension(scene);
     if (extension == ".gltf" || extension == ".glb") return script.path.parent_path() / scene;
     return shipped_file("scenes", *script.scene + ".gltf");
 }

@@ -8,8 +8,8 @@
 #include <fmt/format.h>
 #include <fmt/ranges.h>
 
+#include <candela/tools/output_file.hpp>
 #include "sandbox/candela_private.hpp"
-#include "sandbox/files/output_file.hpp"
 #include "sandbox/scene/scene.hpp"
 
 namespace candela::sandbox {
@@ -99,7 +99,7 @@ void save_script(Script script, const fs::path& scene, const fs::path& file) {
     } catch (const std::runtime_error& error) {
         throw std::runtime_error(fmt::format("{}: {}", file.string(), error.what()));
     }
-    write_text(file, json);
+    tools::write_text(file, json);
 }
 
 }  // namespace candela::sandbox

@@ -14,9 +14,9 @@
 #include <fmt/ranges.h>
 
 #include <candela/settings.hpp>
+#include <candela/tools/output_file.hpp>
 #include "sandbox/command_line/choose_configuration.hpp"
 #include "sandbox/command_line/exit_status.hpp"
-#include "sandbox/files/output_file.hpp"
 #include "sandbox/scene/scene.hpp"
 
 namespace candela::sandbox {
@@ -143,7 +143,7 @@ SkyChoice parse_sky(const std::string& text) {
 fs::path parse_output(std::string_view flag, const std::string& text,
                       const std::vector<std::string_view>& extensions) {
     fs::path path = text;
-    const std::string extension = lower_extension(path);
+    const std::string extension = tools::lower_extension(path);
     if (std::find(extensions.begin(), extensions.end(), extension) == extensions.end()) {
         fail(flag, text, fmt::format("does not end in {}", fmt::join(extensions, ", ")));
     }

@@ -17,6 +17,7 @@
 
 #include <candela/gl_error.hpp>
 #include <candela/headless_context.hpp>
+#include <candela/tools/output_file.hpp>
 #include "sandbox/animation/animation_script.hpp"
 #include "sandbox/animation/clips.hpp"
 #include "sandbox/candela_private.hpp"
@@ -24,7 +25,6 @@
 #include "sandbox/command_line/exit_status.hpp"
 #include "sandbox/command_line/messages.hpp"
 #include "sandbox/files/config_watch.hpp"
-#include "sandbox/files/output_file.hpp"
 #include "sandbox/headless/headless.hpp"
 #include "sandbox/headless/report.hpp"
 #include "sandbox/scene/environment.hpp"
@@ -127,7 +127,7 @@ Scene open_scene(const Options& options, const TellProgress& tell) {
 /// The configuration for a scene, with an exposure if the picture is to be looked at: others are linear.
 Configuration exposed(ChosenConfiguration chosen, const Scene& scene, const Options& options) {
     const std::optional<std::filesystem::path> out = picture_path(options);
-    if (out && lower_extension(*out) == ".png") {
+    if (out && tools::lower_extension(*out) == ".png") {
         SceneExposure(chosen.leaves_exposure_open).choose(scene.path, chosen.configuration.tone_map);
     }
     return chosen.configuration;

@@ -9,6 +9,7 @@
 #include <glm/gtc/quaternion.hpp>
 
 #include <candela/scene/hierarchy.hpp>
+#include "sandbox/candela_private.hpp"
 #include "sandbox/editing/placing.hpp"
 #include "sandbox/scene/scene.hpp"
 
@@ -22,7 +23,7 @@ constexpr float least_sine = 0.03F;
 
 /// The position along the line `origin` + t·`axis` (unit length) that is nearest to the ray, in metres;
 /// nullopt if the ray is almost parallel to the line, or if it points away from the nearest position.
-std::optional<float> nearest_on_line(const Ray& ray, const glm::vec3& origin, const glm::vec3& axis) {
+std::optional<float> nearest_on_line(const tools::Ray& ray, const glm::vec3& origin, const glm::vec3& axis) {
     const float cosine = glm::dot(axis, ray.direction);
     const float squared_sine = 1.0F - cosine * cosine;
     if (!(squared_sine > least_sine * least_sine)) return std::nullopt;
@@ -76,9 +77,9 @@ void Drag::set_mode(World& world, DragMode mode) {
     axis_ = axis_of(world, entity_, mode);
 }
 
-void Drag::follow(World& world, const Viewport& viewport, glm::vec2 pointer, const SceneRays& surfaces,
+void Drag::follow(World& world, const Viewport& viewport, glm::vec2 pointer, const tools::SceneRays& surfaces,
                   float gap) const {
-    const Ray ray = ray_through(viewport, pointer);
+    const tools::Ray ray = ray_through(viewport, pointer);
     switch (mode_.kind) {
         case DragKind::move_in_plane:
             return move_in_plane(world, ray);
@@ -103,28 +104,29 @@ void Drag::follow(World& world, const Viewport& viewport, glm::vec2 pointer, con
     }
 }
 
-void Drag::move_in_plane(World& world, const Ray& ray) const {
+void Drag::move_in_plane(World& world, const tools::Ray& ray) const {
     const auto from = intersect_plane(grabbed_, centre_, forward_);
     const auto to = intersect_plane(ray, centre_, forward_);
     if (from && to) move_to(world, entity_, centre_ + *to - *from);
 }
 
-void Drag::move_along_axis(World& world, const Ray& ray) const {
+void Drag::move_along_axis(World& world, const tools::Ray& ray) const {
     const auto from = nearest_on_line(grabbed_, centre_, axis_);
     const auto to = nearest_on_line(ray, centre_, axis_);
     if (from && to) move_to(world, entity_, centre_ + (*to - *from) * axis_);
 }
 
 /// Meshes rest on the surface, everything else keeps the gap.
-void Drag::move_over_surface(World& world, const Ray& ray, const SceneRays& surfaces, float gap) const {
-    const std::optional<SurfaceHit> hit = surfaces.first_hit(ray, family_);
+void Drag::move_over_surface(World& world, const tools::Ray& ray, const tools::SceneRays& surfaces,
+                             float gap) const {
+    const std::optional<tools::SurfaceHit> hit = surfaces.first_hit(ray, family_);
     if (!hit) return;
     float above = corners_.empty() ? gap : -std::numeric_limits<float>::infinity();
     for (const glm::vec3& corner : corners_) above = std::max(above, glm::dot(centre_ - corner, hit->normal));
     move_to(world, entity_, hit->point + above * hit->normal);
 }
 
-void Drag::turn_around(World& world, const Ray& ray, const glm::vec3& axis) const {
+void Drag::turn_around(World& world, const tools::Ray& ray, const glm::vec3& axis) const {
     const bool edge_on = std::abs(glm::dot(axis, ray.direction)) < least_sine ||
                          std::abs(glm::dot(axis, grabbed_.direction)) < least_sine;
     const auto from = intersect_plane(grabbed_, centre_, axis);
@@ -136,8 +138,8 @@ void Drag::turn_around(World& world, const Ray& ray, const glm::vec3& axis) cons
 }
 
 /// Where there is no surface, at the point as far away as the entity.
-void Drag::aim_at(World& world, const Ray& ray, const SceneRays& surfaces) const {
-    const std::optional<SurfaceHit> hit = surfaces.first_hit(ray, family_);
+void Drag::aim_at(World& world, const tools::Ray& ray, const tools::SceneRays& surfaces) const {
+    const std::optional<tools::SurfaceHit> hit = surfaces.first_hit(ray, family_);
     const glm::vec3 target =
         hit ? hit->point : ray.origin + glm::distance(ray.origin, centre_) * ray.direction;
     if (glm::distance(target, centre_) > 0.0F) aim(world, entity_, target - centre_);
@@ -153,7 +155,7 @@ void Drag::scale_by(World& world, const glm::vec3& factors) const {
     }
 }
 
-void Drag::scale_along_axis(World& world, const Ray& ray) const {
+void Drag::scale_along_axis(World& world, const tools::Ray& ray) const {
     const auto from = nearest_on_line(grabbed_, centre_, axis_);
     const auto to = nearest_on_line(ray, centre_, axis_);
     if (!from || !to || !std::isfinite(*to / *from)) return;

@@ -9,7 +9,7 @@
 
 #include <candela/ecs/world.hpp>
 #include <candela/scene/components.hpp>
-#include "sandbox/editing/scene_rays.hpp"
+#include <candela/tools/scene_rays.hpp>
 #include "sandbox/editing/viewport.hpp"
 
 namespace candela::sandbox {
@@ -53,17 +53,18 @@ class Drag {
 
     /// Sets the entity's transform for this position of the pointer. `gap` is the height, in metres, at which
     /// something without a mesh is moved over a surface; meshes rest on it.
-    void follow(World& world, const Viewport& viewport, glm::vec2 pointer, const SceneRays& surfaces,
+    void follow(World& world, const Viewport& viewport, glm::vec2 pointer, const tools::SceneRays& surfaces,
                 float gap) const;
 
  private:
-    void move_in_plane(World& world, const Ray& ray) const;
-    void move_along_axis(World& world, const Ray& ray) const;
-    void move_over_surface(World& world, const Ray& ray, const SceneRays& surfaces, float gap) const;
-    void turn_around(World& world, const Ray& ray, const glm::vec3& axis) const;
-    void aim_at(World& world, const Ray& ray, const SceneRays& surfaces) const;
+    void move_in_plane(World& world, const tools::Ray& ray) const;
+    void move_along_axis(World& world, const tools::Ray& ray) const;
+    void move_over_surface(World& world, const tools::Ray& ray, const tools::SceneRays& surfaces,
+                           float gap) const;
+    void turn_around(World& world, const tools::Ray& ray, const glm::vec3& axis) const;
+    void aim_at(World& world, const tools::Ray& ray, const tools::SceneRays& surfaces) const;
     void scale_by(World& world, const glm::vec3& factors) const;
-    void scale_along_axis(World& world, const Ray& ray) const;
+    void scale_along_axis(World& world, const tools::Ray& ray) const;
 
     Entity entity_;
     DragMode mode_;
@@ -71,7 +72,7 @@ class Drag {
     glm::vec3 centre_;
     glm::vec3 axis_;     ///< of the mode
     glm::vec3 forward_;  ///< of the view at the start
-    Ray grabbed_;
+    tools::Ray grabbed_;
     glm::vec2 pointer_;
     std::vector<Entity> family_;      ///< surfaces that are ignored, because they move along
     std::vector<glm::vec3> corners_;  ///< of the box around the family at the start

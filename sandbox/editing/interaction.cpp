@@ -11,6 +11,7 @@
 #include <glm/geometric.hpp>
 
 #include <candela/scene/components.hpp>
+#include "sandbox/candela_private.hpp"
 #include "sandbox/editing/light_picking.hpp"
 #include "sandbox/editing/placing.hpp"
 
@@ -96,11 +97,12 @@ struct Place {
 
 /// Over the surface in the middle of the picture, at most half-way to what is over it; otherwise, at the
 /// pivot.
-Place place_for_light(const SceneRays& surfaces, const Ray& middle, const glm::vec3& pivot, float height) {
-    const std::optional<SurfaceHit> hit = surfaces.first_hit(middle);
+Place place_for_light(const tools::SceneRays& surfaces, const tools::Ray& middle, const glm::vec3& pivot,
+                      float height) {
+    const std::optional<tools::SurfaceHit> hit = surfaces.first_hit(middle);
     if (!hit) return {pivot};
     const glm::vec3 off_surface = hit->point + 1e-3F * height * hit->normal;
-    const std::optional<SurfaceHit> above = surfaces.first_hit({off_surface, hit->normal});
+    const std::optional<tools::SurfaceHit> above = surfaces.first_hit({off_surface, hit->normal});
     const float free = above ? std::min(height, 0.5F * above->distance) : height;
     return {hit->point + free * hit->normal, -hit->normal};
 }
@@ -200,7 +202,7 @@ void Interaction::end_gesture() {
 }
 
 void Interaction::click(const Viewport& viewport) {
-    const std::optional<SurfaceHit> hit = surfaces_.first_hit(ray_through(viewport, pointer_));
+    const std::optional<tools::SurfaceHit> hit = surfaces_.first_hit(ray_through(viewport, pointer_));
     if (!hit && surfaces_.building()) return;  // there may be something
     selected = hit ? std::optional(hit->entity) : std::nullopt;
 }
@@ -407,7 +409,7 @@ void Interaction::select_touched(const std::vector<Entity>& touched) {
 
 void Interaction::add(const AnyLight& light) {
     const float radius = viewer_.scene_radius();
-    const Ray middle = ray_through(viewport(), origin_ + 0.5F * size_);
+    const tools::Ray middle = ray_through(viewport(), origin_ + 0.5F * size_);
     Place place = place_for_light(surfaces_, middle, viewer_.orbit().pivot(), light_height * radius);
     const bool far_away =
         std::visit([]<class Light>(const Light&) { return !light_traits<Light>.has_position; }, light);

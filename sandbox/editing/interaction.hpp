@@ -9,13 +9,13 @@
 #include <glm/vec2.hpp>
 
 #include <candela/ecs/world.hpp>
+#include <candela/tools/scene_rays.hpp>
 #include "sandbox/editing/drag.hpp"
 #include "sandbox/editing/gizmo.hpp"
 #include "sandbox/editing/history.hpp"
 #include "sandbox/editing/key_bindings.hpp"
 #include "sandbox/editing/light_labels.hpp"
 #include "sandbox/editing/objects.hpp"
-#include "sandbox/editing/scene_rays.hpp"
 #include "sandbox/editing/viewer.hpp"
 #include "sandbox/window/window.hpp"
 
@@ -69,7 +69,7 @@ class Interaction {
     [[nodiscard]] Entity camera() const { return viewer_.camera(); }
     [[nodiscard]] History& history() { return history_; }
     [[nodiscard]] const History& history() const { return history_; }
-    [[nodiscard]] const SceneRays& surfaces() const { return surfaces_; }
+    [[nodiscard]] const tools::SceneRays& surfaces() const { return surfaces_; }
     /// The entity that is being dragged.
     [[nodiscard]] std::optional<Entity> dragged() const;
     /// Waits until clicks find all surfaces.
@@ -129,7 +129,7 @@ class Interaction {
     World* world_;
     Viewer viewer_;
     History history_;
-    SceneRays surfaces_;
+    tools::SceneRays surfaces_;
     glm::vec2 size_{1.0F};
     glm::vec2 origin_{0.0F};
     glm::vec2 pointer_{0.0F};

@@ -16,8 +16,9 @@ int order_of(const LightLabel& label) {
 
 }  // namespace
 
-std::vector<LightLabel> light_labels(const World& world, const Viewport& viewport, const SceneRays& surfaces,
-                                     std::optional<Entity> hovered, std::optional<Entity> selected) {
+std::vector<LightLabel> light_labels(const World& world, const Viewport& viewport,
+                                     const tools::SceneRays& surfaces, std::optional<Entity> hovered,
+                                     std::optional<Entity> selected) {
     std::vector<LightLabel> labels;
     for (LightMarker& marker : light_markers(world)) {
         const std::optional<glm::vec2> at = project(viewport, marker.position);

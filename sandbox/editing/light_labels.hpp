@@ -8,7 +8,7 @@
 #include <glm/vec3.hpp>
 
 #include <candela/ecs/world.hpp>
-#include "sandbox/editing/scene_rays.hpp"
+#include <candela/tools/scene_rays.hpp>
 #include "sandbox/editing/viewport.hpp"
 
 namespace candela::sandbox {
@@ -27,7 +27,8 @@ struct LightLabel {
 /// The labels of the lights that the picture shows, in the order in which they are drawn: hidden ones first,
 /// the hovered and the selected one last.
 [[nodiscard]] std::vector<LightLabel> light_labels(const World& world, const Viewport& viewport,
-                                                   const SceneRays& surfaces, std::optional<Entity> hovered,
+                                                   const tools::SceneRays& surfaces,
+                                                   std::optional<Entity> hovered,
                                                    std::optional<Entity> selected);
 
 }  // namespace candela::sandbox

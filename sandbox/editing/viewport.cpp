@@ -34,17 +34,12 @@ float metres_per_unit(const Viewport& viewport, const glm::vec3& point) {
     return 2.0F * w / (scale * viewport.size.y);
 }
 
-Ray ray_through(const Viewport& viewport, glm::vec2 position) {
-    const glm::vec2 inside = (position - viewport.origin) / viewport.size;
-    const glm::vec2 ndc = glm::vec2(2.0F, -2.0F) * inside + glm::vec2(-1.0F, 1.0F);
-    // Depth is reversed: 1 on the near plane. A depth of 0.5 is beyond it, whatever the projection.
-    const glm::dvec4 near = viewport.world_from_clip * glm::dvec4(ndc, 1.0, 1.0);
-    const glm::dvec4 beyond = viewport.world_from_clip * glm::dvec4(ndc, 0.5, 1.0);
-    const glm::dvec3 origin = glm::dvec3(near) / near.w;
-    return {origin, glm::normalize(glm::dvec3(beyond) / beyond.w - origin)};
+tools::Ray ray_through(const Viewport& viewport, glm::vec2 position) {
+    return tools::ray_through(viewport.world_from_clip, (position - viewport.origin) / viewport.size);
 }
 
-std::optional<glm::vec3> intersect_plane(const Ray& ray, const glm::vec3& point, const glm::vec3& normal) {
+std::optional<glm::vec3> intersect_plane(const tools::Ray& ray, const glm::vec3& point,
+                                         const glm::vec3& normal) {
     constexpr float least_cosine = 1e-4F;
     const float cosine = glm::dot(ray.direction, normal);
     if (std::abs(cosine) < least_cosine) return std::nullopt;

@@ -7,22 +7,15 @@
 #include <glm/vec3.hpp>
 
 #include <candela/ecs/world.hpp>
+#include <candela/tools/ray.hpp>
 
 namespace candela::sandbox {
-
-/// A ray from `origin` in a unit direction; world space, metres.
-struct Ray {
-    glm::vec3 origin{0.0F};
-    glm::vec3 direction{0.0F, 0.0F, -1.0F};
-};
 
 /// Converts between world space and window coordinates, whose origin is the window's upper left corner. The
 /// picture fills a rectangle of the window.
 struct Viewport {
     glm::mat4 clip_from_world{1.0F};
-    /// Of double precision: the near plane, where rays start, may be a thousandth of the distances of
-    /// interest.
-    glm::dmat4 world_from_clip{1.0};
+    glm::dmat4 world_from_clip{1.0};       ///< of double precision for tools::ray_through
     glm::vec3 forward{0.0F, 0.0F, -1.0F};  ///< unit vector, world space
     glm::vec2 size{1.0F};                  ///< of the picture, window coordinates
     glm::vec2 origin{0.0F};                ///< upper left corner of the picture, window coordinates
@@ -45,11 +38,11 @@ struct Viewport {
 [[nodiscard]] float metres_per_unit(const Viewport& viewport, const glm::vec3& point);
 
 /// The ray of all points seen at a window position, starting on the near plane.
-[[nodiscard]] Ray ray_through(const Viewport& viewport, glm::vec2 position);
+[[nodiscard]] tools::Ray ray_through(const Viewport& viewport, glm::vec2 position);
 
 /// The intersection of the ray with the plane through `point`; nullopt if they are parallel or the plane is
 /// behind the origin of the ray.
-[[nodiscard]] std::optional<glm::vec3> intersect_plane(const Ray& ray, const glm::vec3& point,
+[[nodiscard]] std::optional<glm::vec3> intersect_plane(const tools::Ray& ray, const glm::vec3& point,
                                                        const glm::vec3& normal);
 
 }  // namespace candela::sandbox

@@ -8,7 +8,7 @@
 #include <system_error>
 #include <utility>
 
-#include "sandbox/files/output_file.hpp"
+#include <candela/tools/output_file.hpp>
 
 namespace candela::sandbox {
 
@@ -53,7 +53,7 @@ void write_list(const fs::path& list, const std::vector<fs::path>& paths) {
     std::string text;
     for (const fs::path& path : paths) text += path.string() + '\n';
     fs::create_directories(list.parent_path());
-    write_text(list, text);
+    tools::write_text(list, text);
 }
 
 }  // namespace

@@ -6,9 +6,10 @@
 #include <fmt/format.h>
 #include <fmt/ranges.h>
 
+#include <candela/tools/output_file.hpp>
 #include "sandbox/animation/clips.hpp"
 #include "sandbox/command_line/messages.hpp"
-#include "sandbox/files/output_file.hpp"
+#include "sandbox/headless/report.hpp"
 #include "sandbox/headless/update_budget.hpp"
 
 namespace candela::sandbox {
@@ -18,7 +19,7 @@ namespace {
 namespace fs = std::filesystem;
 
 GraphFormat graph_format(const fs::path& path) {
-    const std::string extension = lower_extension(path);
+    const std::string extension = tools::lower_extension(path);
     if (extension == ".dot") return GraphFormat::dot;
     return extension == ".json" ? GraphFormat::json : GraphFormat::text;
 }
@@ -49,11 +50,11 @@ void run_headless(const HeadlessContext& context, Scene& scene, Entity camera,
     Renderer renderer(context.get_proc(),
                       {.shader_directory = options.shaders.value_or(fs::path()), .log = print_message});
     apply(renderer, configuration);
-    Capture capture(renderer, size);
+    tools::Capture capture(renderer, context.get_proc(), size);
     const std::optional<fs::path> out = picture_path(options);
     const int frames = frames_of(options, scene);
 
-    RunReport run{
+    tools::RunReport run{
         context.description(), scene.path.string(), animation_of(scene), size, configuration, {}, {}};
     ClipPlayback clips;
     UpdateBudget budget(options.update_budget.value_or(0.0));
@@ -61,8 +62,8 @@ void run_headless(const HeadlessContext& context, Scene& scene, Entity camera,
         apply(renderer, budget.limited(configuration));
         if (scene.animation) scene.animation->apply(scene.world, frame);
         clips.advance(scene.world, frame == 0 ? 0.0 : seconds_a_frame);
-        CaptureReport captured;
-        const Picture picture = capture.render(scene.world, camera, options.samples, captured);
+        tools::CaptureReport captured;
+        const tools::Picture picture = capture.render(scene.world, camera, options.samples, captured);
         budget.learn(captured.frame);
         captured.frame.index = static_cast<std::uint64_t>(frame);
         run.frames.push_back(std::move(captured.frame));
@@ -83,22 +84,22 @@ void run_headless(const HeadlessContext& context, Scene& scene, Entity camera,
     check_energy(run.scene, run.state);
 }
 
-Picture whole_picture(Renderer& renderer, Capture& capture, const World& world, Entity camera, int samples) {
+tools::Picture whole_picture(Renderer& renderer, tools::Capture& capture, const World& world, Entity camera,
+                             int samples) {
     Configuration whole = renderer.configuration();
     whole.frame_budget_ms = 0.0F;
     whole.vpls.updates = 0;
     apply(renderer, whole);
-    CaptureReport ignored;
-    return capture.render(world, camera, samples, ignored);
+    return capture.render(world, camera, samples);
 }
 
-void write_report(const Options& options, const RunReport& report) {
-    if (options.report) write_text(*options.report, to_json(report));
+void write_report(const Options& options, const tools::RunReport& report) {
+    if (options.report) tools::write_text(*options.report, to_json(report));
 }
 
 void write_graph(const Options& options, const Renderer& renderer) {
     if (options.describe_graph) {
-        write_text(*options.describe_graph, renderer.describe(graph_format(*options.describe_graph)));
+        tools::write_text(*options.describe_graph, renderer.describe(graph_format(*options.describe_graph)));
     }
 }
 

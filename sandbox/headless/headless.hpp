@@ -5,9 +5,9 @@
 
 #include <candela/headless_context.hpp>
 #include <candela/renderer.hpp>
+#include <candela/tools/capture.hpp>
+#include <candela/tools/run_report.hpp>
 #include "sandbox/command_line/options.hpp"
-#include "sandbox/headless/capture.hpp"
-#include "sandbox/headless/report.hpp"
 #include "sandbox/scene/scene.hpp"
 
 namespace candela::sandbox {
@@ -27,7 +27,7 @@ void run_headless(const HeadlessContext& context, Scene& scene, Entity camera,
                   const Configuration& configuration, const Options& options, glm::ivec2 size);
 
 /// Writes --report if it is asked for.
-void write_report(const Options& options, const RunReport& report);
+void write_report(const Options& options, const tools::RunReport& report);
 
 /// Writes --describe-graph if it is asked for.
 void write_graph(const Options& options, const Renderer& renderer);
@@ -37,7 +37,7 @@ void apply(Renderer& renderer, const Configuration& configuration);
 
 /// Like Capture::render, but at full quality, whatever the frame budget is, and with all surfels traced. The
 /// renderer has no limits from then on.
-[[nodiscard]] Picture whole_picture(Renderer& renderer, Capture& capture, const World& world, Entity camera,
-                                    int samples);
+[[nodiscard]] tools::Picture whole_picture(Renderer& renderer, tools::Capture& capture, const World& world,
+                                           Entity camera, int samples);
 
 }  // namespace candela::sandbox

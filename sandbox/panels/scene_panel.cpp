@@ -15,6 +15,7 @@
 #include <glm/trigonometric.hpp>
 
 #include <candela/scene/components.hpp>
+#include <candela/tools/run_report.hpp>
 #include "sandbox/headless/report.hpp"
 #include "sandbox/panels/controls.hpp"
 #include "sandbox/scene/environment.hpp"
@@ -340,7 +341,7 @@ void draw_light_counts(const LightReport& lights) {
 
 void draw_vpls(const VplReport& vpls) {
     text(fmt::format("{} of {} VPLs alive", vpls.alive, vpls.requested));
-    for (const EnergyLine& line : energy_lines(vpls.flux)) {
+    for (const tools::EnergyLine& line : tools::energy_lines(vpls.flux)) {
         text(fmt::format("{:<10}{:>9.3g}{:>9.3g}{:>9.3g}", line.name, line.value.r, line.value.g,
                          line.value.b));
     }

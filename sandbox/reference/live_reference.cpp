@@ -22,9 +22,9 @@ namespace candela::reference {
 
 namespace {
 
-using sandbox::Picture;
 using sandbox::ReferencePicture;
 using sandbox::ReferenceRequest;
+using tools::Picture;
 using Clock = std::chrono::steady_clock;
 
 // The fewest that the tracer takes: pictures come soon and often.
@@ -109,7 +109,7 @@ class Passes {
     }
 
     std::array<Mean, 2> halves_;
-    sandbox::Mask hit_;
+    tools::Mask hit_;
 };
 
 /// The reference on a thread that waits for requests.

@@ -9,16 +9,16 @@
 #include <glm/vec2.hpp>
 
 #include <candela/ecs/world.hpp>
-#include "sandbox/files/picture.hpp"
-#include "sandbox/files/picture_error.hpp"
+#include <candela/tools/picture.hpp>
+#include <candela/tools/picture_error.hpp>
 
 namespace candela::sandbox {
 
 /// What a path tracer has found out about a picture so far.
 struct ReferencePicture {
     /// All light, direct and indirect; linear radiance.
-    Picture radiance;
-    Mask hit;  ///< the pixels that show a surface; others show the sky, or black
+    tools::Picture radiance;
+    tools::Mask hit;  ///< the pixels that show a surface; others show the sky, or black
     /// Paths per pixel; 0 for a preview, which is a smaller picture, enlarged, and of no use for measuring.
     std::uint32_t samples = 0;
     /// An estimate of the relMSE that the noise of `radiance` causes. A picture's error over `radiance` is

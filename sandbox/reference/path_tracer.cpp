@@ -40,7 +40,7 @@ const PlacedCamera& find_camera(const SceneContent& scene, Entity wanted) {
     return *found;
 }
 
-sandbox::Picture black(glm::uvec2 size) {
+tools::Picture black(glm::uvec2 size) {
     return {glm::ivec2(size), std::vector(std::size_t{size.x} * size.y, glm::vec3(0.0F))};
 }
 
@@ -151,8 +151,8 @@ Estimate trace(const Scene& scene, Entity camera, const Settings& settings, cons
     return std::move(trace.estimate);
 }
 
-sandbox::Picture total(const Estimate& estimate) {
-    sandbox::Picture sum = estimate.direct;
+tools::Picture total(const Estimate& estimate) {
+    tools::Picture sum = estimate.direct;
     for (std::size_t i = 0; i < sum.pixels.size(); ++i) sum.pixels[i] += estimate.indirect.pixels[i];
     return sum;
 }

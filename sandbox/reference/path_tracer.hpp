@@ -8,7 +8,7 @@
 
 #include <glm/vec2.hpp>
 
-#include "sandbox/files/picture.hpp"
+#include <candela/tools/picture.hpp>
 #include "sandbox/reference/scene.hpp"
 
 namespace candela::reference {
@@ -45,12 +45,12 @@ struct Settings {
 struct Estimate {
     /// Exact for points and directions; that of emitting surfaces and of the sky is sampled, `samples` times
     /// a pixel.
-    sandbox::Picture direct;
-    sandbox::Picture indirect;               ///< the mean of both halves
-    std::array<sandbox::Picture, 2> halves;  ///< independent estimates of the indirect light
-    std::vector<std::uint8_t> hit;           ///< 1 where the pixel shows a surface
-    std::vector<std::uint8_t> edge;  ///< 1 within `edge_radius` pixels of a silhouette or a shadow edge
-    double seconds = 0.0;            ///< wall time
+    tools::Picture direct;
+    tools::Picture indirect;               ///< the mean of both halves
+    std::array<tools::Picture, 2> halves;  ///< independent estimates of the indirect light
+    std::vector<std::uint8_t> hit;         ///< 1 where the pixel shows a surface
+    std::vector<std::uint8_t> edge;        ///< 1 within `edge_radius` pixels of a silhouette or a shadow edge
+    double seconds = 0.0;                  ///< wall time
 };
 
 /// The reach of `Estimate::edge` around an edge, in pixels along x and along y.
@@ -71,6 +71,6 @@ inline constexpr int edge_radius = 2;
                              const std::stop_token& stop = {});
 
 /// Direct and indirect light together.
-[[nodiscard]] sandbox::Picture total(const Estimate& estimate);
+[[nodiscard]] tools::Picture total(const Estimate& estimate);
 
 }  // namespace candela::reference

@@ -36,7 +36,7 @@ float mean_emission(const Material& material) {
 }
 
 /// Whether nothing is in the way between two points on surfaces or at lamps.
-bool see_each_other(const SceneRays& surfaces, const glm::vec3& a, const glm::vec3& b) {
+bool see_each_other(const tools::SceneRays& surfaces, const glm::vec3& a, const glm::vec3& b) {
     constexpr float inside = 1e-3F;  // of the way, whose ends may lie on surfaces
     const glm::vec3 start = glm::mix(a, b, inside);
     const glm::vec3 end = glm::mix(b, a, inside);
@@ -46,8 +46,8 @@ bool see_each_other(const SceneRays& surfaces, const glm::vec3& a, const glm::ve
 
 }  // namespace
 
-std::vector<SurfaceHit> seen_surfaces(const SceneRays& surfaces, const Viewport& viewport) {
-    std::vector<SurfaceHit> seen;
+std::vector<tools::SurfaceHit> seen_surfaces(const tools::SceneRays& surfaces, const Viewport& viewport) {
+    std::vector<tools::SurfaceHit> seen;
     for (float y = 0.5F; y < viewport.size.y; ++y) {
         for (float x = 0.5F; x < viewport.size.x; ++x) {
             const auto hit = surfaces.first_hit(ray_through(viewport, viewport.origin + glm::vec2(x, y)));
@@ -57,7 +57,7 @@ std::vector<SurfaceHit> seen_surfaces(const SceneRays& surfaces, const Viewport&
     return seen;
 }
 
-LampLight::LampLight(const World& world, const SceneRays& surfaces) : surfaces_(surfaces) {
+LampLight::LampLight(const World& world, const tools::SceneRays& surfaces) : surfaces_(surfaces) {
     visit_lights(world, [&]<class Light>(Entity entity, const Light& light) {
         if constexpr (light_traits<Light>.has_position) {
             if (strength_of(light) * light.colour == glm::vec3(0.0F)) return;
@@ -70,7 +70,7 @@ LampLight::LampLight(const World& world, const SceneRays& surfaces) : surfaces_(
     });
 }
 
-bool LampLight::reaches(const SurfaceHit& surface) const {
+bool LampLight::reaches(const tools::SurfaceHit& surface) const {
     return std::ranges::any_of(lamps_, [&](const Lamp& lamp) {
         const glm::vec3 apart = surface.point - lamp.position;
         const float distance = glm::length(apart);
@@ -80,7 +80,7 @@ bool LampLight::reaches(const SurfaceHit& surface) const {
     });
 }
 
-EmittedLight::EmittedLight(const World& world, const SceneRays& surfaces) : surfaces_(surfaces) {
+EmittedLight::EmittedLight(const World& world, const tools::SceneRays& surfaces) : surfaces_(surfaces) {
     WorldMatrices matrices(world);
     for (const auto& [entity, instance] : world.view<MeshInstance>()) {
         for (const Primitive& primitive : instance.mesh->primitives) add(primitive, matrices(entity));

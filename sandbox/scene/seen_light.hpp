@@ -10,17 +10,18 @@
 
 #include <candela/ecs/world.hpp>
 #include <candela/scene/components.hpp>
-#include "sandbox/editing/scene_rays.hpp"
+#include <candela/tools/scene_rays.hpp>
 #include "sandbox/editing/viewport.hpp"
 
 namespace candela::sandbox {
 
 /// The surface at the centre of each unit square of a picture, where there is one.
-[[nodiscard]] std::vector<SurfaceHit> seen_surfaces(const SceneRays& surfaces, const Viewport& viewport);
+[[nodiscard]] std::vector<tools::SurfaceHit> seen_surfaces(const tools::SceneRays& surfaces,
+                                                           const Viewport& viewport);
 
 /// The share of surfaces, from 0 to 1, that `is_lit(const SurfaceHit&)`; 0 of none.
 template <class IsLit>
-[[nodiscard]] float lit_share(std::span<const SurfaceHit> seen, IsLit&& is_lit) {
+[[nodiscard]] float lit_share(std::span<const tools::SurfaceHit> seen, IsLit&& is_lit) {
     if (seen.empty()) return 0.0F;
     return static_cast<float>(std::ranges::count_if(seen, is_lit)) / static_cast<float>(seen.size());
 }
@@ -28,11 +29,11 @@ template <class IsLit>
 /// The point lights and spot lights of a world, as far as they shine at all. `surfaces` must outlive it.
 class LampLight {
  public:
-    LampLight(const World& world, const SceneRays& surfaces);
+    LampLight(const World& world, const tools::SceneRays& surfaces);
 
     [[nodiscard]] bool any() const { return !lamps_.empty(); }
     /// Whether any of them shines on the front of a surface, without bounces.
-    [[nodiscard]] bool reaches(const SurfaceHit& surface) const;
+    [[nodiscard]] bool reaches(const tools::SurfaceHit& surface) const;
 
  private:
     /// World space, metres.
@@ -43,7 +44,7 @@ class LampLight {
         float least_cosine;  ///< between the axis and where it shines
     };
 
-    const SceneRays& surfaces_;
+    const tools::SceneRays& surfaces_;
     std::vector<Lamp> lamps_;
 };
 
@@ -52,7 +53,7 @@ class LampLight {
 /// it.
 class EmittedLight {
  public:
-    EmittedLight(const World& world, const SceneRays& surfaces);
+    EmittedLight(const World& world, const tools::SceneRays& surfaces);
 
     /// Whether any surface emits light.
     [[nodiscard]] bool any() const { return !flux_.empty(); }
@@ -72,7 +73,7 @@ class EmittedLight {
     [[nodiscard]] float draw_geometry(const glm::vec3& point, const glm::vec3& normal);
     [[nodiscard]] float unit() { return std::uniform_real_distribution<float>(0.0F, 1.0F)(random_); }
 
-    const SceneRays& surfaces_;
+    const tools::SceneRays& surfaces_;
     std::vector<EmittingTriangle> triangles_;
     std::vector<double> flux_;  // of each triangle's front, lm
     std::discrete_distribution<std::size_t> by_flux_;

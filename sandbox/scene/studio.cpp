@@ -65,7 +65,7 @@ World with_shapes(const World& world) {
 bool is_lit(const World& scene_world) {
     if (scene_world.count<Environment>() + scene_world.count<DirectionalLight>() > 0) return true;
     World world = with_shapes(scene_world);
-    SceneRays surfaces;
+    tools::SceneRays surfaces;
     const LampLight lamps(world, surfaces);
     EmittedLight emitted(world, surfaces);
     if (!lamps.any() && !emitted.any()) return false;
@@ -73,17 +73,17 @@ bool is_lit(const World& scene_world) {
     surfaces.update_and_wait(world);
     constexpr glm::vec2 size(24.0F);
     const Entity camera = choose_camera(world, std::nullopt, 1.0F);
-    const std::vector<SurfaceHit> seen = seen_surfaces(surfaces, make_viewport(world, camera, size));
+    const std::vector<tools::SurfaceHit> seen = seen_surfaces(surfaces, make_viewport(world, camera, size));
     // What lamps do not reach is lit by bounces and may be all that is seen but for a spot.
     constexpr float least_share_of_lamps = 0.01F;
-    const auto by_lamps = [&](const SurfaceHit& hit) { return lamps.reaches(hit); };
+    const auto by_lamps = [&](const tools::SurfaceHit& hit) { return lamps.reaches(hit); };
     if (lit_share(seen, by_lamps) >= least_share_of_lamps) return true;
     // A helmet with a glowing visor hardly lights itself, and a lamp mostly the inside of its shade. What is
     // seen of rooms is mostly lit by their lamps, by 0.1 or more.
     constexpr float least = 0.02F;
     constexpr int rays = 8;
     constexpr float least_share_of_emitters = 0.25F;
-    const auto by_emitters = [&](const SurfaceHit& hit) {
+    const auto by_emitters = [&](const tools::SurfaceHit& hit) {
         return emitted.on_white(hit.point, hit.normal, rays) > least;
     };
     return lit_share(seen, by_emitters) >= least_share_of_emitters;

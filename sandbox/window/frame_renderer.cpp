@@ -10,7 +10,7 @@ namespace candela::sandbox {
 
 namespace {
 
-FinishedTexture finished(const Canvas& canvas) {
+FinishedTexture finished(const tools::Canvas& canvas) {
     return {canvas.colour.name(), canvas.size()};
 }
 
@@ -36,11 +36,11 @@ std::vector<VplDot> read_dots(gl::Device& device, const FrameResults& results) {
     return dots;
 }
 
-std::shared_ptr<const Picture> read_radiance(gl::Device& device, const ResultTexture& result) {
+std::shared_ptr<const tools::Picture> read_radiance(gl::Device& device, const ResultTexture& result) {
     if (result.texture == 0) return nullptr;
     const std::vector<glm::vec4> texels = gl::read_texels(device.gl(), result.texture, result.size);
-    return std::make_shared<const Picture>(
-        flipped({glm::ivec2(result.size), {texels.begin(), texels.end()}}));
+    return std::make_shared<const tools::Picture>(
+        tools::flipped({glm::ivec2(result.size), {texels.begin(), texels.end()}}));
 }
 
 }  // namespace
@@ -157,11 +157,12 @@ void FrameRenderer::draw_second(RenderedFrame& frame, Slot& slot) {
 }
 
 /// Gives the canvas this size, in pixels.
-void FrameRenderer::fit(Canvas& canvas, glm::uvec2 size) {
-    if (canvas.colour.name() == 0 || canvas.size() != size) canvas = Canvas(device_, size, Format::rgba8);
+void FrameRenderer::fit(tools::Canvas& canvas, glm::uvec2 size) {
+    if (canvas.colour.name() == 0 || canvas.size() != size)
+        canvas = tools::Canvas(device_, size, Format::rgba8);
 }
 
-void FrameRenderer::draw(Renderer& renderer, Canvas& canvas) {
+void FrameRenderer::draw(Renderer& renderer, tools::Canvas& canvas) {
     fit(canvas, request_->size);
     const RenderView view{.camera = request_->camera,
                           .target = canvas.target(),
@@ -170,7 +171,7 @@ void FrameRenderer::draw(Renderer& renderer, Canvas& canvas) {
     renderer.render(*request_->world, std::span(&view, 1));
 }
 
-void FrameRenderer::draw_other(Canvas& canvas) {
+void FrameRenderer::draw_other(tools::Canvas& canvas) {
     if (!other_) other_ = make_renderer();
     for (const std::string& error : other_->configure(*request_->other)) errors_.push_back(error);
     draw(*other_, canvas);
@@ -194,7 +195,7 @@ FinishedTexture FrameRenderer::draw_difference_of(Slot& slot) {
     return finished(slot.difference);
 }
 
-void FrameRenderer::inspect(RenderedFrame& frame, Canvas& canvas) {
+void FrameRenderer::inspect(RenderedFrame& frame, tools::Canvas& canvas) {
     constexpr std::uint64_t most_elements = 256;
     frame.inspection = inspector_->result();
     if (frame.inspection->texture == 0) {
@@ -206,10 +207,10 @@ void FrameRenderer::inspect(RenderedFrame& frame, Canvas& canvas) {
     frame.inspection->texture = canvas.colour.name();
 }
 
-void FrameRenderer::draw_reference(Canvas& canvas) {
-    const Picture& picture = *request_->reference;
+void FrameRenderer::draw_reference(tools::Canvas& canvas) {
+    const tools::Picture& picture = *request_->reference;
     fit(canvas, picture.size);
-    renderer_->tone_map(flipped(picture).pixels, canvas.target());
+    renderer_->tone_map(tools::flipped(picture).pixels, canvas.target());
 }
 
 /// The description changes with the graph, which also depends on the scene.

@@ -11,7 +11,7 @@
 #include <candela/gl_loader.hpp>
 #include <candela/inspection.hpp>
 #include <candela/renderer.hpp>
-#include "sandbox/headless/canvas.hpp"
+#include "sandbox/candela_private.hpp"
 #include "sandbox/headless/update_budget.hpp"
 #include "sandbox/window/frame_request.hpp"
 
@@ -43,22 +43,22 @@ class FrameRenderer {
 
  private:
     struct Slot {
-        Canvas picture;
-        Canvas other;
-        Canvas difference;
-        Canvas inspection;
+        tools::Canvas picture;
+        tools::Canvas other;
+        tools::Canvas difference;
+        tools::Canvas inspection;
     };
 
     [[nodiscard]] std::unique_ptr<Renderer> make_renderer() const;
     std::optional<std::string> replace_renderers();
     RenderedFrame render_request(Slot& slot);
-    void fit(Canvas& canvas, glm::uvec2 size);
-    void draw(Renderer& renderer, Canvas& canvas);
+    void fit(tools::Canvas& canvas, glm::uvec2 size);
+    void draw(Renderer& renderer, tools::Canvas& canvas);
     void draw_second(RenderedFrame& frame, Slot& slot);
-    void draw_other(Canvas& canvas);
-    void draw_reference(Canvas& canvas);
+    void draw_other(tools::Canvas& canvas);
+    void draw_reference(tools::Canvas& canvas);
     FinishedTexture draw_difference_of(Slot& slot);
-    void inspect(RenderedFrame& frame, Canvas& canvas);
+    void inspect(RenderedFrame& frame, tools::Canvas& canvas);
     std::shared_ptr<const Report> report();
     std::shared_ptr<const GraphDescription> graph();
 

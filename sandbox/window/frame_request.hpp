@@ -12,7 +12,7 @@
 
 #include <candela/inspection.hpp>
 #include <candela/renderer.hpp>
-#include "sandbox/files/picture.hpp"
+#include <candela/tools/picture.hpp>
 
 namespace candela::sandbox {
 
@@ -27,7 +27,7 @@ struct FrameRequest {
     double update_budget_ms = 0.0;         ///< see UpdateBudget
     std::optional<Configuration> other{};  ///< the same view is rendered with this one, too
     /// Linear radiance that is tone-mapped into RenderedFrame::other, instead of `other`; may be null.
-    std::shared_ptr<const Picture> reference{};
+    std::shared_ptr<const tools::Picture> reference{};
     std::optional<float> difference{};       ///< fills RenderedFrame::difference: this factor
     std::optional<Inspection> inspection{};  ///< fills RenderedFrame::inspection
     bool read_vpls = false;                  ///< fills RenderedFrame::vpls
@@ -72,7 +72,7 @@ struct RenderedFrame {
     std::vector<FrameReport> times;        ///< of frames whose GPU times have arrived since the last frame
     std::shared_ptr<const GraphDescription> graph;
     std::vector<VplDot> vpls;
-    std::shared_ptr<const Picture> radiance;
+    std::shared_ptr<const tools::Picture> radiance;
 };
 
 }  // namespace candela::sandbox

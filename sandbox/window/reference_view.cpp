@@ -25,14 +25,14 @@ bool ReferenceView::update() {
     std::optional<ReferencePicture> newest = tracer_->newest();
     if (!newest) return new_fault;
     picture_ = std::move(newest);
-    radiance_ = std::make_shared<const Picture>(picture_->radiance);
+    radiance_ = std::make_shared<const tools::Picture>(picture_->radiance);
     return true;
 }
 
-std::optional<double> ReferenceView::error_of(const Picture& shown) const {
+std::optional<double> ReferenceView::error_of(const tools::Picture& shown) const {
     if (!picture_ || picture_->samples == 0 || shown.size != picture_->radiance.size) return std::nullopt;
     try {
-        return relative_mse(shown, picture_->radiance, picture_->hit);
+        return tools::relative_mse(shown, picture_->radiance, picture_->hit);
     } catch (const std::invalid_argument&) {
         return std::nullopt;  // no surface is seen, or the picture is not finite
     }

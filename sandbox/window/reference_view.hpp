@@ -30,16 +30,16 @@ class ReferenceView {
     /// Null until the first picture.
     [[nodiscard]] const ReferencePicture* picture() const { return picture_ ? &*picture_ : nullptr; }
     /// The radiance of `picture`, for the render thread; null until the first picture.
-    [[nodiscard]] const std::shared_ptr<const Picture>& radiance() const { return radiance_; }
+    [[nodiscard]] const std::shared_ptr<const tools::Picture>& radiance() const { return radiance_; }
     [[nodiscard]] const std::string& fault() const { return fault_; }
     /// The relMSE of a picture over the reference; nullopt if they cannot be compared yet.
-    [[nodiscard]] std::optional<double> error_of(const Picture& shown) const;
+    [[nodiscard]] std::optional<double> error_of(const tools::Picture& shown) const;
 
  private:
     std::unique_ptr<LiveReference> tracer_;
     std::optional<ReferenceRequest> request_;
     std::optional<ReferencePicture> picture_;
-    std::shared_ptr<const Picture> radiance_;
+    std::shared_ptr<const tools::Picture> radiance_;
     std::string fault_;
 };
 

@@ -7,9 +7,9 @@
 
 #include <fmt/format.h>
 
+#include <candela/tools/output_file.hpp>
 #include "sandbox/animation/script_writer.hpp"
 #include "sandbox/files/numbered_file.hpp"
-#include "sandbox/files/output_file.hpp"
 
 namespace candela::sandbox {
 
@@ -21,7 +21,7 @@ SavedScene save_document(const Document& document) {
 
 std::filesystem::path save_configuration(const Configuration& configuration) {
     std::filesystem::path path = next_numbered_file("-config.json");
-    write_text(path, write_configuration(configuration) + "\n");
+    tools::write_text(path, write_configuration(configuration) + "\n");
     return path;
 }
 

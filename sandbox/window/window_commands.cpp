@@ -7,9 +7,9 @@
 
 #include <fmt/format.h>
 
+#include <candela/tools/picture.hpp>
 #include "sandbox/command_line/messages.hpp"
 #include "sandbox/files/numbered_file.hpp"
-#include "sandbox/files/picture.hpp"
 #include "sandbox/files/recent_files.hpp"
 #include "sandbox/scene/studio.hpp"
 #include "sandbox/window/save_commands.hpp"
@@ -86,7 +86,7 @@ void WindowSession::save_picture() {
         std::launch::async,
         [size = picture.size, texels = gl::read_texels(device_.gl(), picture.texture, picture.size)] {
             std::filesystem::path path = next_numbered_file(".png");
-            write_png(path, size, rgb_of_texels(size, texels));
+            tools::write_png(path, size, tools::rgb_of_texels(size, texels));
             return path;
         });
 }

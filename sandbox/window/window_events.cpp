@@ -11,9 +11,9 @@
 
 #include <fmt/format.h>
 
+#include <candela/tools/output_file.hpp>
 #include "sandbox/candela_private.hpp"
 #include "sandbox/command_line/messages.hpp"
-#include "sandbox/files/output_file.hpp"
 #include "sandbox/files/recent_files.hpp"
 #include "sandbox/scene/environment.hpp"
 #include "sandbox/window/save_commands.hpp"
@@ -96,7 +96,7 @@ void WindowSession::announce_scene() {
 }
 
 void WindowSession::take_dropped_file(const std::filesystem::path& file) {
-    const std::string extension = lower_extension(file);
+    const std::string extension = tools::lower_extension(file);
     if (extension == ".gltf" || extension == ".glb") return open(file);
     if (!state_.document || (extension != ".hdr" && extension != ".exr")) {
         return report_errors(

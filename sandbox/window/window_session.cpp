@@ -6,7 +6,7 @@
 
 #include <fmt/format.h>
 
-#include "sandbox/headless/capture.hpp"
+#include <candela/tools/capture.hpp>
 #include "sandbox/headless/headless.hpp"
 #include "sandbox/headless/report.hpp"
 #include "sandbox/panels/controls.hpp"
@@ -194,7 +194,7 @@ void WindowSession::write_results() {
     thread_->run([this](Renderer& renderer) {
         const Scene& scene = state_.document->scene;
         const glm::ivec2 size = state_.shown ? glm::ivec2(state_.shown->picture.size) : glm::ivec2(1);
-        const RunReport run{
+        const tools::RunReport run{
             "window", scene.path.string(), animation_of(scene),        size, renderer.configuration(),
             reports_, renderer.report(),   environment_of(scene.world)};
         if (options_.out) write_picture(renderer);
@@ -205,7 +205,7 @@ void WindowSession::write_results() {
 }
 
 void WindowSession::write_picture(Renderer& renderer) {
-    Capture capture(renderer, window_.framebuffer_size());
+    tools::Capture capture(renderer, Window::functions(), window_.framebuffer_size());
     const std::filesystem::path path = numbered(*options_.out, std::max(frame_ - 1, 0));
     capture.write(path, whole_picture(renderer, capture, state_.document->scene.world,
                                       state_.document->interaction.viewer(), options_.samples));

@@ -50,7 +50,8 @@ HostGbuffer draw_gbuffer(const glm::mat4& clip_from_world) {
     return {host::draw_ground(clip_from_world, picture_size)};
 }
 
-void run_recipes(candela::Renderer& renderer, host::Scene& scene, host::Checks& checks) {
+void run_recipes(candela::Renderer& renderer, const candela::gl::GetProc& get_proc, host::Scene& scene,
+                 host::Checks& checks) {
     candela::World& world = scene.world;
     const glm::uvec2 size = picture_size;
     const candela::Entity camera = scene.camera;
@@ -94,6 +95,9 @@ void run_recipes(candela::Renderer& renderer, host::Scene& scene, host::Checks& 
     const auto input_has_arrived = [] { return false; };
     int shown = 0;
     const auto show = [&](const candela::Target&) { ++shown; };
+    const glm::vec2 pointer = 0.5F * glm::vec2(size);
+    int selected = 0;
+    const auto select = [&](candela::Entity, glm::vec3) { ++selected; };
 
     // Whatever a piece does, frames of the usual view go on, and are lit.
     const auto end_of = [&](const std::string& piece) {
@@ -105,6 +109,7 @@ void run_recipes(candela::Renderer& renderer, host::Scene& scene, host::Checks& 
     };
 #include "recipes.inc"
     checks.check(shown == 1, "a frame that is wanted is complete");
+    checks.check(selected == 1, "the ground is under the pointer");
 }
 
 }  // namespace
@@ -117,7 +122,7 @@ int main() {
         candela::Renderer renderer(
             context->get_proc(),
             {.log = [](std::string_view line) { warn(std::string(line)); }, .checked = true});
-        run_recipes(renderer, scene, checks);
+        run_recipes(renderer, context->get_proc(), scene, checks);
     }
     return checks.status();
 }

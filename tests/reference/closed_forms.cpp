@@ -42,7 +42,7 @@ candela::Scene lit_ground(const Transform& pose, const LightComponent& light) {
 bool shows(const candela::Scene& scene, const Irradiance& irradiance, Defect defect) {
     const glm::uvec2 size(96, 64);
     const auto radiance = [&](glm::dvec3 at) { return glm::dvec3(0.5 / pi * irradiance(at)); };
-    const sandbox::Picture expected =
+    const tools::Picture expected =
         flipped(expected_picture(scene, size, glm::dvec3(0.0), {0, 1, 0}, radiance));
     const Estimate estimate =
         trace(Scene(scene.world), scene.camera, {.size = size, .samples = 2, .bounces = 0, .defect = defect});
@@ -144,7 +144,7 @@ double upper_radiance(double form_factor) {
     return Discs::upper_albedo / pi * Discs::lower_albedo * Discs::illuminance * Discs::cosine * form_factor;
 }
 
-sandbox::Picture expected_disc(const candela::Scene& scene, glm::uvec2 size) {
+tools::Picture expected_disc(const candela::Scene& scene, glm::uvec2 size) {
     return flipped(expected_picture(scene, size, {0, Discs::distance, 0}, {0, 1, 0}, [](glm::dvec3 at) {
         return glm::dvec3(upper_radiance(element_to_disc(std::hypot(at.x, at.z))));
     }));
@@ -157,7 +157,7 @@ Estimate trace_discs(const candela::Scene& scene, Defect defect) {
 }
 
 /// The mean over the pixels of their ratio to those expected, whose errors are independent.
-NoisyMean mean_ratio(const sandbox::Picture& picture, const sandbox::Picture& expected) {
+NoisyMean mean_ratio(const tools::Picture& picture, const tools::Picture& expected) {
     double sum = 0.0;
     double squares = 0.0;
     const auto count = static_cast<double>(expected.pixels.size());
@@ -220,7 +220,7 @@ bool plane_under_rectangle() {
     const std::array corners{corner(-1, -1), corner(1, -1), corner(1, 1), corner(-1, 1)};
 
     const glm::uvec2 size(96, 64);
-    const sandbox::Picture expected =
+    const tools::Picture expected =
         flipped(expected_picture(scene, size, glm::dvec3(0.0), {0, 1, 0}, [&](glm::dvec3 at) {
             return glm::dvec3(0.5 / pi * irradiance_of_polygon(corners, at, {0, 1, 0}));
         }));
@@ -234,8 +234,8 @@ namespace {
 /// Whether the direct light of the ground's middle is as expected, and the noise of its estimate is small.
 bool middle_is(const candela::Scene& scene, double expected) {
     const Estimate estimate = trace_inside(scene, {16, 16}, 4096, 0, Defect::none);
-    const sandbox::Picture truth{estimate.direct.size, std::vector(estimate.direct.pixels.size(),
-                                                                   glm::vec3(static_cast<float>(expected)))};
+    const tools::Picture truth{estimate.direct.size, std::vector(estimate.direct.pixels.size(),
+                                                                 glm::vec3(static_cast<float>(expected)))};
     const NoisyMean mean = mean_ratio(estimate.direct, truth);
     return mean.error < 2e-3 && is_within(mean, 1.0, float_tolerance);
 }
@@ -350,7 +350,7 @@ bool box_furnace(double albedo, Defect defect) {
 
 bool parallel_discs(Defect defect) {
     const candela::Scene scene = two_discs();
-    const sandbox::Picture expected = expected_disc(scene, disc_pixels);
+    const tools::Picture expected = expected_disc(scene, disc_pixels);
     const Estimate estimate = trace_discs(scene, defect);
     const double ratio = noise_ratio(estimate, expected, estimate.hit);
     MESSAGE("squared error of the disc: ", ratio, " times its noise");

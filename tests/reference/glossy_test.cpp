@@ -77,7 +77,7 @@ glm::dvec3 from_ground(glm::dvec3 v) {
 }
 
 /// Whether all pixels of a picture of grey surfaces are as expected; `value` takes the pixel's index.
-void check_pixels(const sandbox::Picture& picture, const std::function<double(std::size_t)>& value,
+void check_pixels(const tools::Picture& picture, const std::function<double(std::size_t)>& value,
                   double tolerance) {
     double worst = 0.0;
     for (std::size_t i = 0; i < picture.pixels.size(); ++i) {

@@ -112,7 +112,7 @@ const ReferencePicture& with_samples(const std::vector<ReferencePicture>& pictur
 
 /// The number of pixels for which `differ(i)` is true.
 template <typename Differ>
-std::size_t count_pixels(const sandbox::Picture& picture, Differ differ) {
+std::size_t count_pixels(const tools::Picture& picture, Differ differ) {
     std::size_t count = 0;
     for (std::size_t i = 0; i < picture.pixels.size(); ++i) count += differ(i) ? 1 : 0;
     return count;
@@ -154,8 +154,8 @@ TEST_CASE("a picture is the mean of two seeds, each of which the tracer traces a
     const auto pictures = refined(scene, {.size = size, .samples = 12});
     const Estimate even = traced(scene, {.size = size, .samples = 6, .seed = 0});
     const Estimate odd = traced(scene, {.size = size, .samples = 6, .seed = 1});
-    const sandbox::Picture a = total(even);
-    const sandbox::Picture b = total(odd);
+    const tools::Picture a = total(even);
+    const tools::Picture b = total(odd);
     const ReferencePicture& last = pictures.back();
     CHECK(last.samples == 12);
     CHECK(last.hit == even.hit);
@@ -187,10 +187,10 @@ TEST_CASE("previews come first, at the size of the picture") {
     // The square is at the lower left.
     scene.world.set(scene.camera, looking({0.7F, 3, -0.5F}, {0.7F, 0, -0.5F}, {0, 0, -1}));
     const auto pictures = refined(scene, {.size = {63, 41}, .samples = 4});
-    const sandbox::Picture& last = pictures.back().radiance;
+    const tools::Picture& last = pictures.back().radiance;
     for (std::size_t i = 0; i < pictures.size(); ++i) {
         CAPTURE(i);
-        const sandbox::Picture& picture = pictures[i].radiance;
+        const tools::Picture& picture = pictures[i].radiance;
         CHECK((pictures[i].samples == 0) == (i < previews));
         CHECK(picture.size == glm::ivec2(63, 41));
         REQUIRE(picture.pixels.size() == last.pixels.size());
@@ -209,7 +209,7 @@ TEST_CASE("the estimated noise is the error over a reference with little noise")
     }
     const Scene scene = shipped_scene(name);
     const glm::uvec2 size(48, 36);
-    const sandbox::Picture truth = total(traced(scene, {.size = size, .samples = 1024, .seed = 9}));
+    const tools::Picture truth = total(traced(scene, {.size = size, .samples = 1024, .seed = 9}));
     const auto pictures = refined(scene, {.size = size, .samples = 64});
     CHECK_FALSE(with_samples(pictures, 2).noise);
     for (const std::uint32_t samples : {4U, 6U, 16U, 32U, 64U}) {
@@ -228,7 +228,7 @@ TEST_CASE("the estimated noise is the error over a reference with little noise")
 TEST_CASE("the error falls as the number of samples grows") {
     const Scene scene = cornell_box();
     const glm::uvec2 size(48, 48);
-    const sandbox::Picture truth = total(traced(scene, {.size = size, .samples = 1024, .seed = 9}));
+    const tools::Picture truth = total(traced(scene, {.size = size, .samples = 1024, .seed = 9}));
     const auto pictures = refined(scene, {.size = size, .samples = 64});
     const auto error = [&](std::uint32_t samples) {
         const ReferencePicture& picture = with_samples(pictures, samples);
@@ -244,7 +244,7 @@ TEST_CASE("antialiased, a pixel is the mean over its area, otherwise what is at 
     constexpr int fine = 16;
     const Estimate points =
         traced(scene, {.size = size * static_cast<unsigned>(fine), .samples = 2, .bounces = 0});
-    const sandbox::Picture areas = study::scaled_down(points.direct, fine);
+    const tools::Picture areas = study::scaled_down(points.direct, fine);
     const ReferencePicture smooth =
         refined(scene, {.size = size, .antialiased = true, .samples = 256}).back();
     const ReferencePicture centres = refined(scene, {.size = size, .samples = 4}).back();
@@ -265,9 +265,9 @@ TEST_CASE_FIXTURE(RenderFixture,
     Scene scene = bright_square();
     scene.world.set(scene.camera, looking({0.7F, 3, -0.5F}, {0.7F, 0, -0.5F}, {0, 0, -1}));
     const glm::uvec2 size(40, 32);
-    const sandbox::Picture smooth =
+    const tools::Picture smooth =
         refined(scene, {.size = size, .antialiased = true, .samples = 256}).back().radiance;
-    const sandbox::Picture centres = refined(scene, {.size = size, .samples = 4}).back().radiance;
+    const tools::Picture centres = refined(scene, {.size = size, .samples = 4}).back().radiance;
     // The renderer shows the square's albedo of 1 in place of its radiance, which is also 1: placing VPLs
     // on what emits light takes longer than all else here.
     const Scene bright = scene;
@@ -277,12 +277,12 @@ TEST_CASE_FIXTURE(RenderFixture,
     Configuration configuration = linear_configuration();
     configuration.show = Show::albedo;
     configure(configuration);
-    const sandbox::Picture frame = reference::flipped(render(scene, size));
+    const tools::Picture frame = reference::flipped(render(scene, size));
     constexpr std::uint32_t frames = 64;
     configuration.refinement = {.enabled = true, .frames = frames};
     configure(configuration);
     for (std::uint32_t i = 1; i < frames; ++i) (void)render(scene, size);
-    const sandbox::Picture mean = reference::flipped(render(scene, size));
+    const tools::Picture mean = reference::flipped(render(scene, size));
     // Away from the edges both are the same, so that all of the error is at edges. A pixel's share of an
     // edge is right to about 0.05 (see above), which counts most where a dark pixel has a small share.
     CHECK(relative_mse(frame, centres) == 0.0);

@@ -7,7 +7,7 @@ namespace candela::reference {
 
 namespace {
 
-double red(const sandbox::Picture& picture, std::size_t pixel) {
+double red(const tools::Picture& picture, std::size_t pixel) {
     return static_cast<double>(picture.pixels[pixel].r);
 }
 
@@ -18,8 +18,8 @@ double error_of_mean(const Estimate& estimate, std::size_t pixel) {
 
 }  // namespace
 
-sandbox::Picture flipped(const candela::Picture& picture) {
-    sandbox::Picture flipped{glm::ivec2(picture.size), {}};
+tools::Picture flipped(const candela::Picture& picture) {
+    tools::Picture flipped{glm::ivec2(picture.size), {}};
     for (std::uint32_t y = picture.size.y; y-- > 0;) {
         for (std::uint32_t x = 0; x < picture.size.x; ++x) flipped.pixels.push_back(picture.at(x, y));
     }
@@ -46,7 +46,7 @@ NoisyMean mean_indirect(const Estimate& estimate, const std::vector<std::uint8_t
     return {sum / count, std::sqrt(variance) / count};
 }
 
-double noise_ratio(const Estimate& estimate, const sandbox::Picture& truth,
+double noise_ratio(const Estimate& estimate, const tools::Picture& truth,
                    const std::vector<std::uint8_t>& mask) {
     double actual = 0.0;
     double estimated = 0.0;
@@ -58,8 +58,8 @@ double noise_ratio(const Estimate& estimate, const sandbox::Picture& truth,
     return actual / estimated;
 }
 
-double worst_error(const sandbox::Picture& a, const sandbox::Picture& b,
-                   const std::vector<std::uint8_t>& mask, double floor) {
+double worst_error(const tools::Picture& a, const tools::Picture& b, const std::vector<std::uint8_t>& mask,
+                   double floor) {
     double worst = 0.0;
     for (std::size_t i = 0; i < mask.size(); ++i) {
         if (mask[i] == 0) continue;

@@ -1,13 +1,13 @@
 #pragma once
 
-#include "sandbox/files/picture.hpp"
+#include <candela/tools/picture.hpp>
 #include "sandbox/reference/path_tracer.hpp"
 #include "tests/renderer/scene_builder.hpp"
 
 namespace candela::reference {
 
 /// The renderer's picture, whose row 0 is at the bottom, with the row order of the reference.
-[[nodiscard]] sandbox::Picture flipped(const candela::Picture& picture);
+[[nodiscard]] tools::Picture flipped(const candela::Picture& picture);
 
 /// 1 where `mask` is 1 and `removed` is 0.
 [[nodiscard]] std::vector<std::uint8_t> without(const std::vector<std::uint8_t>& mask,
@@ -23,11 +23,11 @@ struct NoisyMean {
 
 /// The mean squared error against `truth` over `mask`, divided by the one that the halves predict: 1 if the
 /// prediction is right.
-[[nodiscard]] double noise_ratio(const Estimate& estimate, const sandbox::Picture& truth,
+[[nodiscard]] double noise_ratio(const Estimate& estimate, const tools::Picture& truth,
                                  const std::vector<std::uint8_t>& mask);
 
 /// The largest |a - b| / max(b, floor) of the red channel over `mask`.
-[[nodiscard]] double worst_error(const sandbox::Picture& a, const sandbox::Picture& b,
+[[nodiscard]] double worst_error(const tools::Picture& a, const tools::Picture& b,
                                  const std::vector<std::uint8_t>& mask, double floor);
 
 }  // namespace candela::reference

@@ -38,7 +38,7 @@ class DirectLight : public PathFixture {
             .cube_resolution = resolution, .map_resolution = resolution, .budget_mib = 1024};
         configure(configuration);
         renderer.invalidate();
-        const sandbox::Picture picture = reference::flipped(render(scene, sampled_size));
+        const tools::Picture picture = reference::flipped(render(scene, sampled_size));
         CHECK(renderer.report().lights.without_shadow == 0);
         const std::vector<std::uint8_t> away = reference::without(truth.hit, truth.edge);
         return {study::measure(picture, truth.direct, away).rel_mse,

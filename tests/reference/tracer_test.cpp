@@ -31,7 +31,7 @@ bool is_same(const Estimate& a, const Estimate& b) {
 }
 
 /// The correlation of the errors of two halves, over the red channel of all pixels.
-double correlation(const sandbox::Picture& a, const sandbox::Picture& b, const sandbox::Picture& truth) {
+double correlation(const tools::Picture& a, const tools::Picture& b, const tools::Picture& truth) {
     double ab = 0.0;
     double aa = 0.0;
     double bb = 0.0;
@@ -80,7 +80,7 @@ TEST_CASE("the sampled direct light of seeds is independent") {
     const auto direct = [&](std::uint32_t samples, std::uint32_t seed) {
         return traced(scene, {.size = {48, 48}, .samples = samples, .bounces = 0, .seed = seed}).direct;
     };
-    const sandbox::Picture truth = direct(512, 9);
+    const tools::Picture truth = direct(512, 9);
     for (std::uint32_t seed = 0; seed < 3; ++seed) {
         CAPTURE(seed);
         // The same limit as above.
@@ -90,7 +90,7 @@ TEST_CASE("the sampled direct light of seeds is independent") {
 
 TEST_CASE("indirect light is the mean of the halves, and the total is direct plus indirect light") {
     const Estimate estimate = traced(cornell_box(), {.size = {32, 32}, .samples = 4});
-    const sandbox::Picture total = reference::total(estimate);
+    const tools::Picture total = reference::total(estimate);
     for (std::size_t i = 0; i < total.pixels.size(); ++i) {
         const glm::vec3 mean = 0.5F * (estimate.halves[0].pixels[i] + estimate.halves[1].pixels[i]);
         CHECK(estimate.indirect.pixels[i] == mean);

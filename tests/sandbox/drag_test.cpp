@@ -8,6 +8,7 @@
 #include <glm/gtc/matrix_transform.hpp>
 
 #include <candela/scene/hierarchy.hpp>
+#include "engine/bvh/box.hpp"
 #include "sandbox/editing/placing.hpp"
 #include "sandbox/scene/scene.hpp"
 #include "tests/sandbox/editing_scene.hpp"
@@ -34,7 +35,7 @@ struct EditedScene {
                             {.rotation = glm::angleAxis(-glm::half_pi<float>(), glm::vec3(1, 0, 0))});
     Entity eye = add_eye(world, {2.0F, 3.0F, 6.0F}, {0.0F, 0.5F, 0.0F});
     Viewport viewport = make_viewport(world, eye, size, origin);
-    SceneRays surfaces;
+    tools::SceneRays surfaces;
 
     EditedScene() { surfaces.update_and_wait(world); }
 

@@ -110,7 +110,7 @@ TEST_CASE(
     world.set(selected, Name{"left"});
     world.set(hovered, Name{"right"});
     world.set(behind, Name{"behind"});
-    SceneRays surfaces;
+    tools::SceneRays surfaces;
     surfaces.update_and_wait(world);
     const auto labels = light_labels(world, front(world, 5.0F), surfaces, hovered, selected);
     REQUIRE(labels.size() == 3);

@@ -61,7 +61,7 @@ TEST_CASE("the ray through the projection of a point hits the point, in both pro
         const Viewport viewport = make_viewport(world, add_camera(world, projection), window);
         for (const glm::vec3 point :
              {glm::vec3(0.0F), glm::vec3(1.0F, -0.7F, 2.0F), glm::vec3(-2.0F, 1.0F, -9.0F)}) {
-            const Ray ray = ray_through(viewport, project(viewport, point).value());
+            const tools::Ray ray = ray_through(viewport, project(viewport, point).value());
             CHECK(std::abs(glm::length(ray.direction) - 1.0F) < tolerance_world);
             CHECK(glm::length(glm::cross(point - ray.origin, ray.direction)) < tolerance_world);
             const auto met = intersect_plane(ray, point, viewport.forward);
@@ -80,7 +80,7 @@ TEST_CASE("a picture beside a panel is picked in window coordinates") {
     const glm::vec3 point(1.0F, -0.7F, 2.0F);
     const glm::vec2 seen_at = project(whole, point).value() + origin;
     CHECK(glm::distance(project(beside, point).value(), seen_at) < tolerance_window);
-    const Ray ray = ray_through(beside, seen_at);
+    const tools::Ray ray = ray_through(beside, seen_at);
     CHECK(glm::length(glm::cross(point - ray.origin, ray.direction)) < tolerance_world);
     CHECK(beside.contains({201.0F, 31.0F}));
     CHECK_FALSE(beside.contains({199.0F, 31.0F}));
@@ -99,7 +99,7 @@ TEST_CASE("a metre at the depth of a point is as long as metres_per_unit says, i
 }
 
 TEST_CASE("rays miss planes that are parallel or behind") {
-    const Ray ray{glm::vec3(0.0F), glm::vec3(0.0F, 0.0F, -1.0F)};
+    const tools::Ray ray{glm::vec3(0.0F), glm::vec3(0.0F, 0.0F, -1.0F)};
     CHECK_FALSE(intersect_plane(ray, {0.0F, 1.0F, 0.0F}, {0.0F, 1.0F, 0.0F}));
     CHECK_FALSE(intersect_plane(ray, {0.0F, 0.0F, 1.0F}, {0.0F, 0.0F, 1.0F}));
 }

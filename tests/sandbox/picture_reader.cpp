@@ -102,11 +102,11 @@ std::vector<float> floats_of(const fs::path& path, const std::string& file, cons
 
 }  // namespace
 
-Picture read_exr(const fs::path& path) {
+tools::Picture read_exr(const fs::path& path) {
     const std::string file = read_bytes(path);
     float* memory = nullptr;
     const char* message = nullptr;
-    Picture picture;
+    tools::Picture picture;
     const int status =
         LoadEXRFromMemory(&memory, &picture.size.x, &picture.size.y,
                           reinterpret_cast<const unsigned char*>(file.data()), file.size(), &message);
@@ -120,11 +120,11 @@ Picture read_exr(const fs::path& path) {
     return picture;
 }
 
-Picture read_pfm(const fs::path& path) {
+tools::Picture read_pfm(const fs::path& path) {
     const std::string file = read_bytes(path);
     const FloatMapHeader header = read_float_map_header(path, file);
     const std::vector<float> floats = floats_of(path, file, header);
-    Picture picture{header.size, {}};
+    tools::Picture picture{header.size, {}};
     picture.pixels.reserve(pixel_count(header.size));
     const std::size_t row_length = static_cast<std::size_t>(header.size.x) * header.channels;
     for (std::size_t row = floats.size(); row > 0; row -= row_length) {

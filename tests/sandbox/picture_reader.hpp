@@ -2,7 +2,7 @@
 
 #include <filesystem>
 
-#include "sandbox/files/picture.hpp"
+#include <candela/tools/picture.hpp>
 
 namespace candela::sandbox {
 
@@ -10,10 +10,10 @@ namespace candela::sandbox {
 // throw std::runtime_error that names the file and the error.
 
 /// Reads channels R, G and B of a scan-line or tiled OpenEXR file with half or full floats.
-[[nodiscard]] Picture read_exr(const std::filesystem::path& path);
+[[nodiscard]] tools::Picture read_exr(const std::filesystem::path& path);
 
 /// Reads a portable float map in colour ("PF") or grey ("Pf"; all channels get its value), little- or
 /// big-endian. Only the sign of the header's scale is used, for the byte order.
-[[nodiscard]] Picture read_pfm(const std::filesystem::path& path);
+[[nodiscard]] tools::Picture read_pfm(const std::filesystem::path& path);
 
 }  // namespace candela::sandbox

@@ -1,4 +1,4 @@
-#include "sandbox/files/picture.hpp"
+#include <candela/tools/picture.hpp>
 
 #include <cmath>
 #include <cstring>
@@ -13,7 +13,7 @@
 #include <fmt/format.h>
 #include <stb/stb_image.h>
 
-#include "sandbox/files/output_file.hpp"
+#include <candela/tools/output_file.hpp>
 #include "tests/sandbox/picture_reader.hpp"
 #include "tests/sandbox/temporary_folder.hpp"
 
@@ -35,8 +35,8 @@ void write(const fs::path& path, const std::string& text) {
 }
 
 /// All pixels are different, and no row or column is the same when reversed.
-Picture gradient(glm::ivec2 size) {
-    Picture picture{size, {}};
+tools::Picture gradient(glm::ivec2 size) {
+    tools::Picture picture{size, {}};
     for (int y = 0; y < size.y; ++y) {
         for (int x = 0; x < size.x; ++x) {
             picture.pixels.emplace_back(static_cast<float>(x), static_cast<float>(y) * 0.1F,
@@ -47,7 +47,7 @@ Picture gradient(glm::ivec2 size) {
 }
 
 /// Compares bits, so that NaN equals itself and -0 does not equal 0.
-bool same_bits(const Picture& a, const Picture& b) {
+bool same_bits(const tools::Picture& a, const tools::Picture& b) {
     return a.size == b.size && a.pixels.size() == b.pixels.size() &&
            std::memcmp(a.pixels.data(), b.pixels.data(), a.pixels.size() * sizeof(glm::vec3)) == 0;
 }
@@ -73,10 +73,10 @@ TEST_CASE("EXR and PFM keep every bit of pictures of every shape") {
     for (const glm::ivec2 size :
          {glm::ivec2(1, 1), glm::ivec2(7, 3), glm::ivec2(3, 70), glm::ivec2(4096, 1), glm::ivec2(1, 4097)}) {
         CAPTURE(size.x);
-        const Picture picture = gradient(size);
-        write_exr(folder / "a.exr", picture);
+        const tools::Picture picture = gradient(size);
+        tools::write_exr(folder / "a.exr", picture);
         CHECK(same_bits(read_exr(folder / "a.exr"), picture));
-        write_pfm(folder / "a.pfm", picture);
+        tools::write_pfm(folder / "a.pfm", picture);
         CHECK(same_bits(read_pfm(folder / "a.pfm"), picture));
     }
 }
@@ -84,20 +84,20 @@ TEST_CASE("EXR and PFM keep every bit of pictures of every shape") {
 TEST_CASE("values that no display can show are kept") {
     const TemporaryFolder folder;
     using Limits = std::numeric_limits<float>;
-    const Picture picture{{2, 2},
-                          {{Limits::infinity(), -Limits::infinity(), Limits::quiet_NaN()},
-                           {Limits::max(), Limits::denorm_min(), -0.0F},
-                           {-1.0F, 1e-20F, 1e20F},
-                           {0.0F, 65505.0F, 1.0F / 3.0F}}};
-    write_exr(folder / "a.exr", picture);
+    const tools::Picture picture{{2, 2},
+                                 {{Limits::infinity(), -Limits::infinity(), Limits::quiet_NaN()},
+                                  {Limits::max(), Limits::denorm_min(), -0.0F},
+                                  {-1.0F, 1e-20F, 1e20F},
+                                  {0.0F, 65505.0F, 1.0F / 3.0F}}};
+    tools::write_exr(folder / "a.exr", picture);
     CHECK(same_bits(read_exr(folder / "a.exr"), picture));
-    write_pfm(folder / "a.pfm", picture);
+    tools::write_pfm(folder / "a.pfm", picture);
     CHECK(same_bits(read_pfm(folder / "a.pfm"), picture));
 }
 
 TEST_CASE("a PFM has the layout of its specification") {
     const TemporaryFolder folder;
-    write_pfm(folder / "a.pfm", Picture{{1, 2}, {{1.0F, 2.0F, 3.0F}, {4.0F, 5.0F, 6.0F}}});
+    tools::write_pfm(folder / "a.pfm", tools::Picture{{1, 2}, {{1.0F, 2.0F, 3.0F}, {4.0F, 5.0F, 6.0F}}});
     // The bottom row first, each float with its lowest byte first: 4 is 0x40800000, 1 is 0x3f800000.
     const std::string file = read(folder / "a.pfm");
     const std::string header = "PF\n1 2\n-1.0\n";
@@ -112,7 +112,7 @@ TEST_CASE("a PFM with a positive scale is read as big-endian") {
     // 1 is 0x3f800000, -2 is 0xc0000000, the smallest denormal is 0x00000001.
     write(folder / "a.pfm",
           std::string("PF\n1 1\n1.0\n") + std::string("\x3f\x80\0\0\xc0\0\0\0\0\0\0\1", 12));
-    const Picture expected{{1, 1}, {{1.0F, -2.0F, std::numeric_limits<float>::denorm_min()}}};
+    const tools::Picture expected{{1, 1}, {{1.0F, -2.0F, std::numeric_limits<float>::denorm_min()}}};
     CHECK(same_bits(read_pfm(folder / "a.pfm"), expected));
 }
 
@@ -122,15 +122,15 @@ TEST_CASE("all channels of a grey PFM have its value") {
     write(folder / "a.pfm",
           std::string("Pf\n2 2\n-1.0\n") + std::string("\0\0\x80\x3f\0\0\0\x80\0\0\0\x40\0\0\x80\x3f", 16));
     const std::vector<float> values{2.0F, 1.0F, 1.0F, -0.0F};
-    Picture expected{{2, 2}, {}};
+    tools::Picture expected{{2, 2}, {}};
     for (const float value : values) expected.pixels.emplace_back(value);
     CHECK(same_bits(read_pfm(folder / "a.pfm"), expected));
 }
 
 TEST_CASE("a truncated file is refused at every length") {
     const TemporaryFolder folder;
-    write_pfm(folder / "a.pfm", gradient({5, 3}));
-    write_exr(folder / "a.exr", gradient({5, 3}));
+    tools::write_pfm(folder / "a.pfm", gradient({5, 3}));
+    tools::write_exr(folder / "a.exr", gradient({5, 3}));
     const std::string pfm = read(folder / "a.pfm");
     const std::string exr = read(folder / "a.exr");
     const fs::path cut = folder / "cut";
@@ -148,7 +148,7 @@ TEST_CASE("a truncated file is refused at every length") {
 TEST_CASE("a PNG contains the given bytes, with the top row first") {
     const TemporaryFolder folder;
     const std::vector<std::uint8_t> rgb{255, 0, 0, 0, 255, 0, 1, 2, 3, 10, 20, 30, 40, 50, 60, 70, 80, 90};
-    write_png(folder / "a.png", {2, 3}, rgb);
+    tools::write_png(folder / "a.png", {2, 3}, rgb);
     int width = 0;
     int height = 0;
     int channels = 0;
@@ -165,29 +165,35 @@ TEST_CASE("pixels that do not match the size are refused") {
     const TemporaryFolder folder;
     const fs::path path = folder / "a.png";
     const std::vector<std::uint8_t> rgb(11);
-    CHECK(names(error_of([&] { write_png(path, {2, 2}, rgb); }), path));
-    CHECK(names(error_of([&] { write_png(path, {0, 0}, {}); }), path));
-    CHECK(names(error_of([&] { write_exr(path, Picture{{2, 2}, std::vector<glm::vec3>(3)}); }), path));
-    CHECK(names(error_of([&] { write_pfm(path, Picture{{-1, -1}, std::vector<glm::vec3>(1)}); }), path));
+    CHECK(names(error_of([&] { tools::write_png(path, {2, 2}, rgb); }), path));
+    CHECK(names(error_of([&] { tools::write_png(path, {0, 0}, {}); }), path));
+    CHECK(names(error_of([&] {
+                    tools::write_exr(path, tools::Picture{{2, 2}, std::vector<glm::vec3>(3)});
+                }),
+                path));
+    CHECK(names(error_of([&] {
+                    tools::write_pfm(path, tools::Picture{{-1, -1}, std::vector<glm::vec3>(1)});
+                }),
+                path));
     CHECK(folder.file_count() == 0);
 }
 
 TEST_CASE("errors name files that cannot be written, and keep what exists there") {
     const TemporaryFolder folder;
-    const Picture picture = gradient({4, 4});
+    const tools::Picture picture = gradient({4, 4});
     const fs::path lost = folder / "no-such-folder" / "a.pfm";
-    const std::string error = error_of([&] { write_pfm(lost, picture); });
+    const std::string error = error_of([&] { tools::write_pfm(lost, picture); });
     CHECK(names(error, lost));
     CHECK(error.find("No such file or directory") != std::string::npos);
 
     const fs::path directory = folder / "folder.png";
     fs::create_directory(directory);
-    CHECK(names(error_of([&] { write_pfm(directory, picture); }), directory));
+    CHECK(names(error_of([&] { tools::write_pfm(directory, picture); }), directory));
     CHECK(fs::is_directory(directory));
     CHECK(folder.file_count() == 1);
 
     // A device that is always full simulates a full disk.
-    const std::string full = error_of([&] { write_pfm("/dev/full", picture); });
+    const std::string full = error_of([&] { tools::write_pfm("/dev/full", picture); });
     CHECK(full == "/dev/full: cannot be written: No space left on device");
 }
 
@@ -195,7 +201,7 @@ TEST_CASE("a file is replaced as a whole and through a link") {
     const TemporaryFolder folder;
     write(folder / "a.pfm", "old");
     fs::create_symlink("a.pfm", folder / "link.pfm");
-    write_pfm(folder / "link.pfm", gradient({3, 2}));
+    tools::write_pfm(folder / "link.pfm", gradient({3, 2}));
     CHECK(fs::is_symlink(folder / "link.pfm"));
     CHECK(same_bits(read_pfm(folder / "a.pfm"), gradient({3, 2})));
     CHECK(folder.file_count() == 2);

@@ -7,6 +7,7 @@
 #include <doctest/doctest.h>
 #include <nlohmann/json.hpp>
 
+#include <candela/tools/run_report.hpp>
 #include "tests/throws.hpp"
 
 namespace candela::sandbox {
@@ -24,8 +25,8 @@ EnergyAccount balanced() {
             .roulette_error = {0.5, 0.25, 0.125}};
 }
 
-RunReport some_run() {
-    RunReport run{"EGL surfaceless", "a/\xFF.gltf", "orbit.json", {640, 480}, {}, {}, {}};
+tools::RunReport some_run() {
+    tools::RunReport run{"EGL surfaceless", "a/\xFF.gltf", "orbit.json", {640, 480}, {}, {}, {}};
     run.frames.push_back({.index = 3,
                           .cpu_ms = 1.5,
                           .gpu_ms = 2.5,
@@ -69,7 +70,7 @@ TEST_CASE("report.json has the members that scripts use") {
 }
 
 TEST_CASE("the sky is in the report, if there is one") {
-    RunReport run = some_run();
+    tools::RunReport run = some_run();
     CHECK(nlohmann::json::parse(to_json(run))["environment"].is_null());
     run.environment = {.radiance = {1.0F, 0.5F, 0.25F}, .picture = nullptr, .rotation = 0.5F};
     const auto plain = nlohmann::json::parse(to_json(run))["environment"];
@@ -81,21 +82,21 @@ TEST_CASE("the sky is in the report, if there is one") {
 }
 
 TEST_CASE("without indirect light there is no energy account") {
-    RunReport run = some_run();
+    tools::RunReport run = some_run();
     run.state.vpls.reset();
     CHECK(nlohmann::json::parse(to_json(run))["vpls"].is_null());
     CHECK(to_table(run.frames[0], run.state).find("emitted") == std::string::npos);
 }
 
 TEST_CASE("an error that nobody asked for is not in the report") {
-    RunReport run = some_run();
+    tools::RunReport run = some_run();
     run.state.vpls->estimated_error.reset();
     CHECK(nlohmann::json::parse(to_json(run))["vpls"]["estimated_error"].is_null());
     CHECK(to_table(run.frames[0], run.state).find("relMSE") == std::string::npos);
 }
 
 TEST_CASE("the table mentions light lists only if there are any") {
-    RunReport run = some_run();
+    tools::RunReport run = some_run();
     CHECK(to_table(run.frames[0], run.state).find("6.5 in the mean, 19 at most") != std::string::npos);
     run.state.lights.tile_max = 0;
     CHECK(to_table(run.frames[0], run.state).find("in a list") == std::string::npos);
@@ -130,7 +131,7 @@ TEST_CASE("lost energy is an error that names the scene") {
 }
 
 TEST_CASE("pixels that are not finite are an error that tells how many and where the first is") {
-    Picture picture{{3, 2}, std::vector<glm::vec3>(6, glm::vec3(1.0F))};
+    tools::Picture picture{{3, 2}, std::vector<glm::vec3>(6, glm::vec3(1.0F))};
     CHECK_NOTHROW(check_finite(picture, 7));
     picture.pixels[4].g = std::numeric_limits<float>::quiet_NaN();
     picture.pixels[5].b = std::numeric_limits<float>::infinity();
@@ -139,7 +140,7 @@ TEST_CASE("pixels that are not finite are an error that tells how many and where
 }
 
 TEST_CASE("the table names every pass and tells which ones ran") {
-    const RunReport run = some_run();
+    const tools::RunReport run = some_run();
     const std::string table = to_table(run.frames[0], run.state);
     for (const char* word :
          {"gbuffer", "vpl-trace", "yes", "emitted", "251 alive of 256", "120 paths", "relMSE 0.25", "36"}) {

@@ -10,7 +10,7 @@
 #include <glm/geometric.hpp>
 #include <nlohmann/json.hpp>
 
-#include "sandbox/files/picture.hpp"
+#include <candela/tools/picture.hpp>
 #include "sandbox/scene/scene.hpp"
 #include "tests/sandbox/picture_reader.hpp"
 #include "tests/sandbox/temporary_folder.hpp"
@@ -46,7 +46,7 @@ TEST_CASE("a headless run writes the picture, the report and the graph") {
     REQUIRE(run(options) == 0);
     CHECK(folder.file_count() == 3);
 
-    const Picture picture = read_pfm(*options.out);
+    const tools::Picture picture = read_pfm(*options.out);
     CHECK(picture.size == glm::ivec2(33, 21));
     // The middle of the picture shows the box, which is lit.
     CHECK(glm::length(picture.pixels[10 * 33 + 16]) > 0.0F);
@@ -63,7 +63,7 @@ TEST_CASE("the same command gives the same picture, bit for bit") {
     options.frames = 2;
     options.out = folder / "%d.pfm";
     REQUIRE(run(options) == 0);
-    const Picture first = read_pfm(folder / "0.pfm");
+    const tools::Picture first = read_pfm(folder / "0.pfm");
     CHECK(first.pixels == read_pfm(folder / "1.pfm").pixels);
     options.frames = 1;
     options.out = folder / "again.pfm";
@@ -168,9 +168,9 @@ TEST_CASE("indirect light moves with the light") {
     options.animate = inputs / "a.json";
     options.out = folder / "%d.pfm";
     REQUIRE(run(options) == 0);
-    const Picture before = read_pfm(folder / "0.pfm");
-    const Picture after = read_pfm(folder / "1.pfm");
-    const auto light_of = [](const Picture& picture, int from, int to) {
+    const tools::Picture before = read_pfm(folder / "0.pfm");
+    const tools::Picture after = read_pfm(folder / "1.pfm");
+    const auto light_of = [](const tools::Picture& picture, int from, int to) {
         float sum = 0.0F;
         for (int y = 0; y < 72; ++y) {
             for (int x = from; x < to; ++x) {
@@ -184,7 +184,7 @@ TEST_CASE("indirect light moves with the light") {
     CHECK(light_of(after, 48, 96) > light_of(before, 48, 96));
     CHECK(light_of(after, 0, 48) < light_of(before, 0, 48));
     // To the left and right of the box nothing is ever lit.
-    for (const Picture* picture : {&before, &after}) {
+    for (const tools::Picture* picture : {&before, &after}) {
         CHECK(light_of(*picture, 0, 12) == 0.0F);
         CHECK(light_of(*picture, 84, 96) == 0.0F);
     }

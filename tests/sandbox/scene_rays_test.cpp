@@ -1,4 +1,4 @@
-#include "sandbox/editing/scene_rays.hpp"
+#include <candela/tools/scene_rays.hpp>
 
 #include <chrono>
 #include <cmath>
@@ -9,6 +9,7 @@
 #include <glm/gtc/constants.hpp>
 
 #include <candela/scene/hierarchy.hpp>
+#include "engine/bvh/bvh.hpp"
 #include "tests/sandbox/editing_scene.hpp"
 
 namespace candela::sandbox {
@@ -20,7 +21,7 @@ namespace {
 // A few roundings of floats of magnitude 10.
 constexpr float rounding = 1e-5F;
 
-constexpr Ray along_view{{0.2F, 0.3F, 5.0F}, {0.0F, 0.0F, -1.0F}};
+constexpr tools::Ray along_view{{0.2F, 0.3F, 5.0F}, {0.0F, 0.0F, -1.0F}};
 
 glm::vec3 random_direction(std::mt19937& random) {
     std::normal_distribution<float> normal;
@@ -28,7 +29,7 @@ glm::vec3 random_direction(std::mt19937& random) {
 }
 
 /// The nearest of all triangles, each moved to world space: what the hierarchies must find.
-std::optional<float> nearest_of_all(const World& world, const Ray& ray) {
+std::optional<float> nearest_of_all(const World& world, const tools::Ray& ray) {
     std::optional<float> nearest;
     for (auto [entity, instance] : world.view<MeshInstance>()) {
         const glm::mat4 to_world = world_matrix(world, entity);
@@ -52,7 +53,7 @@ TEST_CASE("a ray meets the nearest surface, with its point, normal and distance"
     World world;
     add_mesh(world, square(1.0F), {.translation = {0.0F, 0.0F, -2.0F}});
     const Entity near = add_mesh(world, square(1.0F), {.translation = {0.0F, 0.0F, 1.0F}});
-    SceneRays rays;
+    tools::SceneRays rays;
     rays.update_and_wait(world);
     const auto hit = rays.first_hit(along_view);
     REQUIRE(hit);
@@ -68,7 +69,7 @@ TEST_CASE("what moved is found where it is now, without another hierarchy") {
     World world;
     const Entity wall = add_mesh(world, square(1.0F));
     const Entity other = add_mesh(world, world.get<MeshInstance>(wall).mesh, {.translation = {9, 9, 9}});
-    SceneRays rays;
+    tools::SceneRays rays;
     rays.update_and_wait(world);
     world.edit<Transform>(wall, [](Transform& transform) { transform.translation.x = 5.0F; });
     world.edit<Transform>(other, [](Transform& transform) { transform.translation = {0, 0, 2}; });
@@ -88,7 +89,7 @@ TEST_CASE("ignored entities and the backs of single-sided surfaces are passed") 
     const Entity last = add_mesh(
         world, square(1.0F, true),
         {.translation = {0, 0, -1}, .rotation = glm::angleAxis(glm::pi<float>(), glm::vec3(0, 1, 0))});
-    SceneRays rays;
+    tools::SceneRays rays;
     rays.update_and_wait(world);
     CHECK(rays.first_hit(along_view).value().entity == first);
     const auto hit = rays.first_hit(along_view, std::array{first});
@@ -101,7 +102,7 @@ TEST_CASE("ignored entities and the backs of single-sided surfaces are passed") 
 TEST_CASE("mirrored instances show their fronts") {
     World world;
     add_mesh(world, cube(1.0F), {.scale = {-1.0F, 2.0F, 1.0F}});
-    SceneRays rays;
+    tools::SceneRays rays;
     rays.update_and_wait(world);
     const auto hit = rays.first_hit(along_view);
     REQUIRE(hit);
@@ -113,7 +114,7 @@ TEST_CASE("a segment is blocked by what is between its ends, and not by what ble
     World world;
     add_mesh(world, square(1.0F));
     const Entity glass = add_mesh(world, square(1.0F, false, AlphaMode::blend), {.translation = {0, 0, 2}});
-    SceneRays rays;
+    tools::SceneRays rays;
     rays.update_and_wait(world);
     CHECK(rays.blocked({0, 0, 5}, {0, 0, -1}));
     CHECK_FALSE(rays.blocked({0, 0, 5}, {0, 0, 1}));   // behind the glass
@@ -137,13 +138,13 @@ TEST_CASE("random rays meet what testing every triangle meets, under parents tha
         add_mesh(world, mesh, {.translation = 3.0F * random_direction(random), .parent = parent});
     }
     add_mesh(world, mesh, {.scale = {1.0F, 0.0F, 1.0F}, .parent = parent});  // flat: not found
-    SceneRays rays;
+    tools::SceneRays rays;
     rays.update_and_wait(world);
     world.remove<MeshInstance>(std::get<0>(*std::next(world.view<MeshInstance>().begin(), 20)));
     rays.update(world);
     int hits = 0;
     for (int i = 0; i < 500; ++i) {
-        const Ray ray{{1.0F, 2.0F, 3.0F}, random_direction(random)};
+        const tools::Ray ray{{1.0F, 2.0F, 3.0F}, random_direction(random)};
         const auto expected = nearest_of_all(world, ray);
         const auto found = rays.first_hit(ray);
         REQUIRE(found.has_value() == expected.has_value());
@@ -163,7 +164,7 @@ TEST_CASE("nothing is found, and nothing waits, while hierarchies are being buil
                  0.1F * random_direction(random));
     }
     add_mesh(world, mesh_of(std::move(primitive)));
-    const auto hits = [&](const SceneRays& rays) {
+    const auto hits = [&](const tools::SceneRays& rays) {
         int found = 0;
         for (int i = 0; i < 100; ++i) found += rays.first_hit({{}, random_direction(random)}) ? 1 : 0;
         return found;
@@ -174,12 +175,12 @@ TEST_CASE("nothing is found, and nothing waits, while hierarchies are being buil
         return std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
     };
     const double whole = seconds_to([&] {
-        SceneRays rays;
+        tools::SceneRays rays;
         rays.update_and_wait(world);
         CHECK(hits(rays) > 0);
     });
     const double interrupted = seconds_to([&] {
-        SceneRays rays;
+        tools::SceneRays rays;
         rays.update(world);
         CHECK(rays.building());
         CHECK(hits(rays) == 0);

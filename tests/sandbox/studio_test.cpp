@@ -95,7 +95,7 @@ TEST_CASE("a helmet with glowing slits does not light itself, and rooms are lit 
         for (const auto& [entity, light] : helmet.world.view<Light>()) all.push_back(entity);
         for (const Entity entity : all) helmet.world.remove<Light>(entity);
     });
-    CHECK(EmittedLight(helmet.world, SceneRays{}).any());
+    CHECK(EmittedLight(helmet.world, tools::SceneRays{}).any());
     light_if_dark(helmet);
     CHECK(has_studio(helmet));
 }
@@ -106,7 +106,7 @@ TEST_CASE("a point above a square is lit by L F") {
     // 0.5).
     World world;
     add(world, square(1.0F, 3.0F), Transform{});
-    SceneRays surfaces;
+    tools::SceneRays surfaces;
     surfaces.update_and_wait(world);
     EmittedLight light(world, surfaces);
     // The deviation of a ray is below the mean, so that of 4,096 is below 1.6 %.

@@ -22,10 +22,10 @@ std::vector<glm::vec3> written(float budget_ms) {
     configuration.vpls.count = 16;
     configuration.frame_budget_ms = budget_ms;
     apply(renderer, configuration);
-    Capture capture(renderer, size);
+    tools::Capture capture(renderer, context->get_proc(), size);
     for (int frame = 0; frame < 4; ++frame) {
         scene.world.edit<Transform>(light, [](Transform& pose) { pose.translation.x += 0.05F; });
-        CaptureReport ignored;
+        tools::CaptureReport ignored;
         static_cast<void>(capture.render(scene.world, camera, 1, ignored));
     }
     CHECK((renderer.quality().scale < 1.0F) == (budget_ms > 0.0F));

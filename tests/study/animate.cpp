@@ -15,7 +15,7 @@
 namespace candela::study {
 namespace {
 
-using sandbox::Picture;
+using tools::Picture;
 
 /// A script, and the scene that it animates.
 struct Play {

@@ -10,8 +10,8 @@ namespace candela::study {
 namespace {
 
 struct TracedSample {
-    sandbox::Picture indirect;
-    sandbox::Picture total;
+    tools::Picture indirect;
+    tools::Picture total;
     double ms = 0.0;
 };
 
@@ -21,8 +21,8 @@ TracedSample sample(const reference::Scene& scene, Entity camera, reference::Set
     const bool odd = settings.samples % 2 != 0;
     settings.samples *= odd ? 2 : 1;
     reference::Estimate estimate = reference::trace(scene, camera, settings);
-    sandbox::Picture indirect = std::move(odd ? estimate.halves[0] : estimate.indirect);
-    sandbox::Picture total = sum(std::move(estimate.direct), indirect);
+    tools::Picture indirect = std::move(odd ? estimate.halves[0] : estimate.indirect);
+    tools::Picture total = sum(std::move(estimate.direct), indirect);
     return {std::move(indirect), std::move(total), estimate.seconds * (odd ? 500.0 : 1000.0)};
 }
 

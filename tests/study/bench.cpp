@@ -47,10 +47,10 @@ std::optional<double> Bench::estimate_error() {
     return vpls ? vpls->estimated_error : std::nullopt;
 }
 
-sandbox::Picture Bench::picture() const {
+tools::Picture Bench::picture() const {
     const glm::uvec2 size = target_.desc().size;
     const std::vector<float> rgba = target_.read_floats();
-    sandbox::Picture picture{glm::ivec2(size), {}};
+    tools::Picture picture{glm::ivec2(size), {}};
     picture.pixels.reserve(rgba.size() / 4);
     // Row 0 of the GL is at the bottom.
     for (std::size_t row = size.y; row-- > 0;) {

@@ -6,8 +6,8 @@
 #include <vector>
 
 #include <candela/renderer.hpp>
+#include <candela/tools/picture.hpp>
 #include "renderer/gl/texture.hpp"
-#include "sandbox/files/picture.hpp"
 #include "tests/study/measures.hpp"
 
 namespace candela::study {
@@ -30,7 +30,7 @@ class Bench {
     /// Renders the last frame again and returns VplReport::estimated_error; none without VPLs.
     std::optional<double> estimate_error();
     /// The picture of the last frame.
-    [[nodiscard]] sandbox::Picture picture() const;
+    [[nodiscard]] tools::Picture picture() const;
     /// The number of pixels that show a surface in the last frame.
     [[nodiscard]] std::size_t covered_pixels() const;
     [[nodiscard]] Renderer& renderer() { return renderer_; }

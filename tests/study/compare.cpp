@@ -9,8 +9,8 @@
 #include <glm/common.hpp>
 #include <glm/vector_relational.hpp>
 
-#include "sandbox/files/output_file.hpp"
-#include "sandbox/files/picture.hpp"
+#include <candela/tools/output_file.hpp>
+#include <candela/tools/picture.hpp>
 #include "tests/sandbox/picture_reader.hpp"
 #include "tests/study/flip.hpp"
 #include "tests/study/heat.hpp"
@@ -19,7 +19,7 @@
 namespace candela::study {
 namespace {
 
-using sandbox::Picture;
+using tools::Picture;
 using Path = std::filesystem::path;
 
 [[noreturn]] void fail(const Path& path, std::string_view error) {
@@ -27,7 +27,7 @@ using Path = std::filesystem::path;
 }
 
 Picture read_by_extension(const Path& path) {
-    const std::string extension = sandbox::lower_extension(path);
+    const std::string extension = tools::lower_extension(path);
     if (extension == ".pfm") return sandbox::read_pfm(path);
     if (extension == ".exr") return sandbox::read_exr(path);
     fail(path, "is named neither .pfm nor .exr");
@@ -66,7 +66,7 @@ void check_flags(const Comparison& comparison) {
     if (comparison.scale && !(*comparison.scale > 0.0 && std::isfinite(*comparison.scale))) {
         throw std::runtime_error(fmt::format("--scale: {} is no relative error above 0", *comparison.scale));
     }
-    if (comparison.heat && sandbox::lower_extension(*comparison.heat) != ".png") {
+    if (comparison.heat && tools::lower_extension(*comparison.heat) != ".png") {
         fail(*comparison.heat, "a heat map is a PNG picture, and is to be named .png");
     }
 }
@@ -91,7 +91,7 @@ std::string compare(const Comparison& comparison) {
     add("FLIP", flip(picture, reference, hit).mean);
     if (!comparison.heat) return text;
     const HeatMap heat = heat_map(picture, reference, hit, comparison.scale);
-    sandbox::write_png(*comparison.heat, heat.size, heat.rgb);
+    tools::write_png(*comparison.heat, heat.size, heat.rgb);
     add("heat", heat.scale);
     return text;
 }

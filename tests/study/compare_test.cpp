@@ -9,7 +9,7 @@
 #include <fmt/format.h>
 #include <stb/stb_image.h>
 
-#include "sandbox/files/picture.hpp"
+#include <candela/tools/picture.hpp>
 #include "tests/sandbox/temporary_folder.hpp"
 #include "tests/study/test_pictures.hpp"
 
@@ -17,10 +17,10 @@ namespace candela::study {
 
 TEST_SUITE("compare") {
 
-using sandbox::Picture;
 using sandbox::TemporaryFolder;
-using sandbox::write_exr;
-using sandbox::write_pfm;
+using tools::Picture;
+using tools::write_exr;
+using tools::write_pfm;
 
 namespace {
 

@@ -15,7 +15,7 @@
 namespace candela::study {
 namespace {
 
-using sandbox::Picture;
+using tools::Picture;
 
 constexpr double pi = std::numbers::pi;
 // A screen of 3840 pixels, 0.7 m wide, seen from 0.7 m.

@@ -18,7 +18,7 @@ struct Flip {
 /// Images", 2020, for an observer who sees 67 pixels per degree. Pixels are linear RGB of the screen, clamped
 /// to [0, 1]. The map covers all pixels; the mean excludes those that do not count in `hit`. Throws as
 /// `measure` does.
-[[nodiscard]] Flip flip(const sandbox::Picture& picture, const sandbox::Picture& reference,
+[[nodiscard]] Flip flip(const tools::Picture& picture, const tools::Picture& reference,
                         std::span<const std::uint8_t> hit = {});
 
 }  // namespace candela::study

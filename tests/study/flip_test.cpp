@@ -12,7 +12,7 @@ namespace candela::study {
 
 TEST_SUITE("flip") {
 
-using sandbox::Picture;
+using tools::Picture;
 
 namespace {
 

@@ -51,7 +51,7 @@ glm::dvec3 heat_colour(double value) {
     return glm::mix(knots[knot], knots[knot + 1], position - static_cast<double>(knot));
 }
 
-HeatMap heat_map(const sandbox::Picture& picture, const sandbox::Picture& reference,
+HeatMap heat_map(const tools::Picture& picture, const tools::Picture& reference,
                  std::span<const std::uint8_t> hit, std::optional<double> scale) {
     const std::vector<double> errors = relative_errors(picture, reference, hit);
     HeatMap map{picture.size, {}, chosen_scale(errors, scale)};

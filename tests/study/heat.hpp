@@ -12,7 +12,7 @@
 
 namespace candela::study {
 
-/// A picture of the error per pixel, in the format of `sandbox::write_png`.
+/// A picture of the error per pixel, in the format of `tools::write_png`.
 struct HeatMap {
     glm::ivec2 size{0};
     std::vector<std::uint8_t> rgb;  ///< sRGB-encoded, row 0 at the top
@@ -26,7 +26,7 @@ struct HeatMap {
 /// The relative errors (see `relative_errors`) as colours, up to `scale`, or, if not given, up to the largest
 /// error. Pixels that do not count in `hit` are grey. Throws as `measure` does, and if `scale` is not above
 /// 0.
-[[nodiscard]] HeatMap heat_map(const sandbox::Picture& picture, const sandbox::Picture& reference,
+[[nodiscard]] HeatMap heat_map(const tools::Picture& picture, const tools::Picture& reference,
                                std::span<const std::uint8_t> hit = {}, std::optional<double> scale = {});
 
 }  // namespace candela::study

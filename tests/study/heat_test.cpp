@@ -12,7 +12,7 @@ namespace candela::study {
 
 TEST_SUITE("heat map") {
 
-using sandbox::Picture;
+using tools::Picture;
 
 namespace {
 

@@ -5,7 +5,7 @@
 #include <limits>
 #include <stdexcept>
 
-#include "sandbox/files/output_file.hpp"
+#include <candela/tools/output_file.hpp>
 #include "tests/sandbox/temporary_folder.hpp"
 
 TEST_SUITE("JSON lines") {
@@ -40,7 +40,7 @@ TEST_CASE("numbers are read back exactly") {
 
 TEST_CASE("errors name files that cannot be read") {
     const TemporaryFolder folder;
-    candela::sandbox::write_text(folder / "broken.json", "{");
+    candela::tools::write_text(folder / "broken.json", "{");
     for (const char* name : {"none.json", "broken.json"}) {
         try {
             static_cast<void>(read_json(folder / name));

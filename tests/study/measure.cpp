@@ -7,9 +7,9 @@
 #include <utility>
 
 #include <candela/headless_context.hpp>
+#include <candela/tools/capture.hpp>
 #include "renderer/frame/build_frame.hpp"
 #include "renderer/passes/view/view.hpp"
-#include "sandbox/headless/capture.hpp"
 #include "sandbox/scene/scene.hpp"
 #include "tests/study/flip.hpp"
 #include "tests/study/heat.hpp"
@@ -20,7 +20,7 @@
 namespace candela::study {
 namespace {
 
-using sandbox::Picture;
+using tools::Picture;
 
 /// The relative error at the brightest colour of all heat maps, so that they can be compared.
 constexpr double heat_scale = 0.5;
@@ -29,7 +29,7 @@ constexpr double heat_scale = 0.5;
 class Darkroom {
  public:
     Darkroom(const gl::GetProc& get_proc, glm::uvec2 size, std::filesystem::path folder)
-        : renderer_(get_proc), capture_(renderer_, glm::ivec2(size)), folder_(std::move(folder)) {
+        : renderer_(get_proc), capture_(renderer_, get_proc, glm::ivec2(size)), folder_(std::move(folder)) {
         std::filesystem::create_directories(folder_);
     }
     /// Returns the file's name within the folder.
@@ -40,13 +40,13 @@ class Darkroom {
     std::string heat(const std::string& name, const Picture& picture, const Picture& reference,
                      const Mask& hit) {
         const HeatMap map = heat_map(picture, reference, hit, heat_scale);
-        sandbox::write_png(folder_ / (name + "-heat.png"), map.size, map.rgb);
+        tools::write_png(folder_ / (name + "-heat.png"), map.size, map.rgb);
         return name + "-heat.png";
     }
 
  private:
     Renderer renderer_;
-    sandbox::Capture capture_;
+    tools::Capture capture_;
     std::filesystem::path folder_;
 };
 

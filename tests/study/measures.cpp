@@ -12,12 +12,12 @@
 namespace candela::study {
 namespace {
 
-using sandbox::mean_over;
-using sandbox::mean_vector;
-using sandbox::Picture;
-using sandbox::ratio;
-using sandbox::relative_square;
-using sandbox::square;
+using tools::mean_over;
+using tools::mean_vector;
+using tools::Picture;
+using tools::ratio;
+using tools::relative_square;
+using tools::square;
 
 double channel_sum(glm::dvec3 vector) {
     return vector.r + vector.g + vector.b;
@@ -69,7 +69,7 @@ void require_sequences(std::span<const Picture> frames, std::span<const Picture>
 }  // namespace
 
 Errors measure(const Picture& picture, const Picture& reference, std::span<const std::uint8_t> hit) {
-    const double rel_mse = sandbox::relative_mse(picture, reference, hit);
+    const double rel_mse = tools::relative_mse(picture, reference, hit);
     const auto a = [&](std::size_t i) { return glm::dvec3(picture.pixels[i]); };
     const auto r = [&](std::size_t i) { return glm::dvec3(reference.pixels[i]); };
     const auto mean_of = [&](auto value) { return mean_over(picture.pixels.size(), hit, value); };
@@ -140,7 +140,7 @@ std::optional<double> rel_mse_of_blocks(const Picture& picture, const Picture& r
         for (std::size_t i = 0; i < blocks.size(); ++i) sums.pixels[i] /= glm::max(shares.pixels[i], 1e-6F);
         return sums;
     };
-    return sandbox::relative_mse(means(picture), means(reference), blocks);
+    return tools::relative_mse(means(picture), means(reference), blocks);
 }
 
 Picture scaled_down(const Picture& picture, int factor) {

@@ -10,7 +10,7 @@
 
 namespace candela::study {
 
-using sandbox::Picture;
+using tools::Picture;
 
 namespace {
 

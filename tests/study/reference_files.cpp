@@ -7,7 +7,7 @@
 #include <stdexcept>
 #include <utility>
 
-#include "sandbox/files/output_file.hpp"
+#include <candela/tools/output_file.hpp>
 #include "tests/sandbox/picture_reader.hpp"
 #include "tests/study/scene_hash.hpp"
 
@@ -15,7 +15,7 @@ namespace candela::study {
 namespace {
 
 namespace fs = std::filesystem;
-using sandbox::Picture;
+using tools::Picture;
 
 constexpr const char* description_file = "reference.json";
 constexpr std::array picture_files{"direct.pfm", "indirect.pfm", "half0.pfm",      "half1.pfm",
@@ -88,7 +88,7 @@ void write_into(const fs::path& folder, const std::string& scene, const Referenc
     const Noise of_halves = noise(estimate);
     description["seconds"] = estimate.seconds;
     description["noise"] = {{"indirect", of_halves.indirect}, {"total", of_halves.total}};
-    sandbox::write_text(folder / description_file, to_line(description) + "\n");
+    tools::write_text(folder / description_file, to_line(description) + "\n");
 }
 
 /// Only files of an earlier reference may be deleted.

@@ -32,7 +32,7 @@ inline constexpr int fine_side = 4;
 struct Reference {
     Request request;
     reference::Estimate estimate;
-    sandbox::Picture direct_fine;  ///< direct light: the mean over the pixel instead of its centre
+    tools::Picture direct_fine;  ///< direct light: the mean over the pixel instead of its centre
 };
 
 /// The relMSE of the mean of the halves, estimated from their difference.
@@ -65,7 +65,7 @@ void replace_folder(const std::filesystem::path& folder,
                     const std::function<void(const std::filesystem::path&)>& fill);
 
 /// Per pixel; both must have the same size.
-[[nodiscard]] sandbox::Picture sum(sandbox::Picture a, const sandbox::Picture& b);
-[[nodiscard]] sandbox::Picture difference(sandbox::Picture a, const sandbox::Picture& b);
+[[nodiscard]] tools::Picture sum(tools::Picture a, const tools::Picture& b);
+[[nodiscard]] tools::Picture difference(tools::Picture a, const tools::Picture& b);
 
 }  // namespace candela::study

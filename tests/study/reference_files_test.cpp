@@ -7,7 +7,7 @@
 
 #include <fmt/format.h>
 
-#include "sandbox/files/output_file.hpp"
+#include <candela/tools/output_file.hpp>
 #include "tests/sandbox/temporary_folder.hpp"
 #include "tests/study/scene_hash.hpp"
 
@@ -15,8 +15,8 @@ TEST_SUITE("reference files") {
 
 using namespace candela;
 using namespace candela::study;
-using sandbox::Picture;
 using sandbox::TemporaryFolder;
+using tools::Picture;
 
 namespace {
 
@@ -125,10 +125,10 @@ TEST_CASE("a folder with a missing file or a broken description is invalid, and 
         std::filesystem::remove(folder / "reference" / "half1.pfm");
     }
     SUBCASE("the description is cut short") {
-        sandbox::write_text(folder / "reference" / "reference.json", "{\"scene\":");
+        tools::write_text(folder / "reference" / "reference.json", "{\"scene\":");
     }
     SUBCASE("the description is of another version") {
-        sandbox::write_text(folder / "reference" / "reference.json", "{\"scene\":\"a.gltf\"}");
+        tools::write_text(folder / "reference" / "reference.json", "{\"scene\":\"a.gltf\"}");
     }
     CHECK_FALSE(holds(folder / "reference", reference.request));
     write_reference(folder / "reference", "a.gltf", reference);
@@ -138,14 +138,14 @@ TEST_CASE("a folder with a missing file or a broken description is invalid, and 
 TEST_CASE("if replacing a folder fails, the old one is kept, and nothing else is left") {
     const TemporaryFolder folder;
     const auto fail_half_way = [](const std::filesystem::path& fresh) {
-        sandbox::write_text(fresh / "a", "new");
+        tools::write_text(fresh / "a", "new");
         throw std::runtime_error("the disc is full");
     };
     CHECK_THROWS(replace_folder(folder / "result", fail_half_way));
     CHECK(folder.file_count() == 0);
     replace_folder(folder / "result", [](const std::filesystem::path& fresh) {
-        sandbox::write_text(fresh / "a", "old");
-        sandbox::write_text(fresh / "b", "old");
+        tools::write_text(fresh / "a", "old");
+        tools::write_text(fresh / "b", "old");
     });
     CHECK_THROWS(replace_folder(folder / "result", fail_half_way));
     CHECK(folder.file_count() == 1);
@@ -157,7 +157,7 @@ TEST_CASE("a new folder replaces all of the old one") {
     const auto write = [&](const char* name) {
         replace_folder(folder / "result/", [&](const std::filesystem::path& fresh) {
             CHECK_FALSE(std::filesystem::exists(folder / "result" / name));
-            sandbox::write_text(fresh / name, name);
+            tools::write_text(fresh / name, name);
         });
     };
     write("a");
@@ -173,8 +173,8 @@ TEST_CASE("a reference never replaces a file or folder that is not a reference")
     write_reference(folder / "empty", "a.gltf", sample());
     CHECK(holds(folder / "empty", sample().request));
     std::filesystem::create_directory(folder / "mine");
-    sandbox::write_text(folder / "mine" / "letter.txt", "dear reader");
-    sandbox::write_text(folder / "file", "x");
+    tools::write_text(folder / "mine" / "letter.txt", "dear reader");
+    tools::write_text(folder / "file", "x");
     for (const char* name : {"mine", "file"}) {
         CHECK_THROWS_AS(static_cast<void>(holds(folder / name, sample().request)), std::runtime_error);
         CHECK_THROWS_AS(write_reference(folder / name, "a.gltf", sample()), std::runtime_error);
@@ -186,7 +186,7 @@ TEST_CASE("a reference never replaces a file or folder that is not a reference")
 TEST_CASE("if a picture's size differs from the description, the error names the picture") {
     const TemporaryFolder folder;
     write_reference(folder / "reference", "a.gltf", sample());
-    sandbox::write_pfm(folder / "reference" / "indirect.pfm", {{1, 1}, {glm::vec3(1.0F)}});
+    tools::write_pfm(folder / "reference" / "indirect.pfm", {{1, 1}, {glm::vec3(1.0F)}});
     try {
         static_cast<void>(read_reference(folder / "reference"));
         FAIL("sizes differ");
@@ -201,13 +201,13 @@ TEST_CASE("a reference of an earlier version of the scene is refused") {
         return fmt::format(R"({{"asset": {{"version": "2.0"}}, "scene": 0, "scenes": [{{"name": "{}"}}]}})",
                            name);
     };
-    sandbox::write_text(folder / "scene.gltf", text("before"));
+    tools::write_text(folder / "scene.gltf", text("before"));
     Reference reference = sample();
     reference.request.scene_hash = scene_hash(folder / "scene.gltf");
     write_reference(folder / "reference", "scene.gltf", reference);
     const auto read = [&] { return read_reference_of(folder / "scene.gltf", folder / "reference"); };
     CHECK(read().request == reference.request);
-    sandbox::write_text(folder / "scene.gltf", text("after"));
+    tools::write_text(folder / "scene.gltf", text("after"));
     CHECK_THROWS_AS(static_cast<void>(read()), std::runtime_error);
 }
 

@@ -15,8 +15,8 @@ Configuration configuration_of(const Point& point) {
     return configuration;
 }
 
-sandbox::Picture finite_picture(Bench& bench) {
-    sandbox::Picture picture = bench.picture();
+tools::Picture finite_picture(Bench& bench) {
+    tools::Picture picture = bench.picture();
     if (const auto pixel = first_not_finite(picture)) {
         const Configuration& configuration = bench.renderer().configuration();
         throw std::runtime_error(fmt::format("the {} light of seed {} is NaN or infinite at pixel ({}, {})",

@@ -12,7 +12,7 @@ namespace candela::study {
 [[nodiscard]] Configuration configuration_of(const Point& point);
 
 /// The picture of the bench's last frame. Throws std::runtime_error if a pixel is not finite.
-[[nodiscard]] sandbox::Picture finite_picture(Bench& bench);
+[[nodiscard]] tools::Picture finite_picture(Bench& bench);
 
 /// Prints the result of `make_line`, or that the point failed; returns whether it succeeded.
 template <class MakeLine>

@@ -5,7 +5,7 @@
 #include <fmt/format.h>
 
 #include <candela/scene/scene_error.hpp>
-#include "sandbox/files/output_file.hpp"
+#include <candela/tools/output_file.hpp>
 #include "tests/sandbox/temporary_folder.hpp"
 
 TEST_SUITE("scene hash") {
@@ -13,7 +13,7 @@ TEST_SUITE("scene hash") {
 using namespace candela;
 using namespace candela::study;
 using sandbox::TemporaryFolder;
-using sandbox::write_text;
+using tools::write_text;
 
 namespace {
 

@@ -9,7 +9,7 @@ namespace {
 
 /// Direct light of points and directions is exact; that of surfaces is sampled, with as many samples per
 /// pixel as at its centre.
-sandbox::Picture trace_fine_direct(const reference::Scene& scene, Entity camera, const Request& request) {
+tools::Picture trace_fine_direct(const reference::Scene& scene, Entity camera, const Request& request) {
     constexpr unsigned points = fine_side * fine_side;
     const unsigned samples = std::max(request.samples / points / 2 * 2, 2U);  // even
     const reference::Settings settings{

@@ -18,7 +18,7 @@
 #include <sstream>
 #include <thread>
 
-#include "sandbox/files/picture.hpp"
+#include <candela/tools/picture.hpp>
 
 namespace candela::sandbox {
 
@@ -220,7 +220,7 @@ void App::keep(const std::string& name) const {
             rgb.insert(rgb.end(), pixel.begin(), pixel.end());
         }
     }
-    write_png(fs::path(folder) / (name + ".png"), {attributes.width, attributes.height}, rgb);
+    tools::write_png(fs::path(folder) / (name + ".png"), {attributes.width, attributes.height}, rgb);
 }
 
 void App::press_button(double x, double y, unsigned pressed) {

@@ -7,7 +7,7 @@
 #include <cmath>
 #include <filesystem>
 
-#include "sandbox/files/output_file.hpp"
+#include <candela/tools/output_file.hpp>
 
 namespace candela::sandbox {
 
@@ -39,7 +39,7 @@ struct Files {
         const Json text = {{"path", path},
                            {"refinement", {{"enabled", false}}},
                            {"tone_map", {{"exposure_ev", exposure_ev}}}};
-        write_text(config, text.dump());
+        tools::write_text(config, text.dump());
     }
     [[nodiscard]] std::vector<std::string> flags() const {
         return {"--config", config.string(), "--shaders",        (folder / "shaders").string(),
@@ -109,7 +109,7 @@ void save_configurations(App& app, const Files& files) {
 void save_shaders(App& app, const Files& files) {
     const Shot before = app.settled();
     const std::string good = text_of(files.tone_map);
-    write_text(files.tone_map, good + "this is no GLSL\n");
+    tools::write_text(files.tone_map, good + "this is no GLSL\n");
     app.wait_for("a fault", [](const Json& record) { return record["errors"].size() == 1; });
     CHECK(app.errors().find("tone_map.frag") != std::string::npos);
     CHECK(changed_pixels(before, app.shoot(), rounding) < width * height / 2);
@@ -118,7 +118,7 @@ void save_shaders(App& app, const Files& files) {
     const std::string line = "colour = vec4(shown,";
     REQUIRE(dim.find(line) != std::string::npos);
     dim.replace(dim.find(line), line.size(), "colour = vec4(0.5 * shown,");
-    write_text(files.tone_map, dim);
+    tools::write_text(files.tone_map, dim);
     app.wait_for("no fault", [](const Json& record) { return record["errors"].empty(); });
     CHECK(std::abs(mean(app.settled()) / mean(before) - 0.5) < 0.02);
 }

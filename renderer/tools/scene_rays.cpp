@@ -1,4 +1,4 @@
-#include "sandbox/editing/scene_rays.hpp"
+#include <candela/tools/scene_rays.hpp>
 
 #include <algorithm>
 #include <array>
@@ -6,16 +6,27 @@
 #include <cmath>
 #include <cstddef>
 #include <cstdint>
+#include <future>
 #include <iterator>
+#include <map>
 #include <set>
+#include <stop_token>
 #include <utility>
+#include <vector>
 
 #include <glm/geometric.hpp>
+#include <glm/mat4x4.hpp>
 #include <glm/matrix.hpp>
 
+#include <candela/scene/components.hpp>
 #include <candela/scene/hierarchy.hpp>
+#include "engine/bvh/box.hpp"
+#include "engine/bvh/bvh.hpp"
+#include "engine/bvh/traverse.hpp"
+#include "engine/bvh/two_level.hpp"
+#include "engine/bvh/wide.hpp"
 
-namespace candela::sandbox {
+namespace candela::tools {
 
 namespace {
 
@@ -61,11 +72,66 @@ candela::Ray to_local(const candela::Ray& ray, const glm::mat4& local_from_world
 
 }  // namespace
 
-SceneRays::~SceneRays() {
-    stop_.request_stop();  // the future waits for its thread
-}
+class SceneRays::State {
+ public:
+    State() = default;
+    State(const State&) = delete;
+    State& operator=(const State&) = delete;
+    ~State() {
+        stop_.request_stop();  // the future waits for its thread
+    }
 
-SceneRays::Patches SceneRays::build_patches(const Mesh& mesh, const std::stop_token& stop) {
+    void update(const World& world);
+    void update_and_wait(const World& world);
+    [[nodiscard]] bool building() const { return building_.valid(); }
+    [[nodiscard]] std::optional<SurfaceHit> first_hit(const Ray& ray, std::span<const Entity> ignored,
+                                                      float most) const;
+    [[nodiscard]] bool blocked(const glm::vec3& from, const glm::vec3& to) const;
+
+ private:
+    /// Triangles of one material in the mesh's local space, few enough to be built without a noticeable wait.
+    struct Patch {
+        std::vector<Triangle> triangles;
+        Bvh bvh;
+        bool double_sided = false;
+        bool blends = false;
+    };
+    using Patches = std::vector<Patch>;
+    using Meshes = std::map<std::shared_ptr<const Mesh>, std::shared_ptr<const Patches>>;
+
+    /// A patch of an entity's mesh. Its mesh is kept by `meshes_`.
+    struct Placed {
+        Entity entity;
+        const Patch* patch = nullptr;
+        glm::mat4 world_from_local{1.0F};
+        glm::mat4 local_from_world{1.0F};
+        bool operator==(const Placed&) const = default;
+    };
+
+    struct Found {
+        float t;
+        const Placed* placed;
+        const Triangle* triangle;
+    };
+
+    static Meshes build(const std::vector<std::shared_ptr<const Mesh>>& meshes, const std::stop_token& stop);
+    static Patches build_patches(const Mesh& mesh, const std::stop_token& stop);
+    void take_built();
+    void build_missing(const World& world);
+    void place(const World& world);
+    template <class Accepts>
+    [[nodiscard]] std::optional<Found> search(const candela::Ray& ray, Accepts&& accepts) const;
+
+    std::optional<Tick> meshes_at_;      ///< revision of the instances whose meshes are built or being built
+    std::optional<Tick> transforms_at_;  ///< revision of the transforms in `placed_`
+    Meshes meshes_;
+    std::vector<Placed> placed_;
+    Bvh top_;  ///< over the boxes of `placed_`
+    std::stop_source stop_;
+    std::future<Meshes> building_;
+};
+
+SceneRays::State::Patches SceneRays::State::build_patches(const Mesh& mesh, const std::stop_token& stop) {
     Patches patches;
     for (const Primitive& primitive : mesh.primitives) {
         const std::size_t count = primitive.indices.size() / 3;
@@ -80,8 +146,8 @@ SceneRays::Patches SceneRays::build_patches(const Mesh& mesh, const std::stop_to
     return patches;
 }
 
-SceneRays::Meshes SceneRays::build(const std::vector<std::shared_ptr<const Mesh>>& meshes,
-                                   const std::stop_token& stop) {
+SceneRays::State::Meshes SceneRays::State::build(const std::vector<std::shared_ptr<const Mesh>>& meshes,
+                                                 const std::stop_token& stop) {
     Meshes built;
     for (const auto& mesh : meshes) {
         built.emplace(mesh, std::make_shared<const Patches>(build_patches(*mesh, stop)));
@@ -89,14 +155,14 @@ SceneRays::Meshes SceneRays::build(const std::vector<std::shared_ptr<const Mesh>
     return built;
 }
 
-void SceneRays::take_built() {
+void SceneRays::State::take_built() {
     if (!building() || building_.wait_for(std::chrono::seconds(0)) != std::future_status::ready) return;
     meshes_.merge(building_.get());
     meshes_at_.reset();
 }
 
 /// Also drops what no entity uses any more.
-void SceneRays::build_missing(const World& world) {
+void SceneRays::State::build_missing(const World& world) {
     std::set<std::shared_ptr<const Mesh>> used;
     for (auto [entity, instance] : world.view<MeshInstance>()) used.insert(instance.mesh);
     std::erase_if(meshes_, [&](const auto& mesh) { return !used.contains(mesh.first); });
@@ -108,7 +174,7 @@ void SceneRays::build_missing(const World& world) {
     }
 }
 
-void SceneRays::place(const World& world) {
+void SceneRays::State::place(const World& world) {
     std::vector<Placed> placed;
     WorldMatrices world_matrices(world);
     for (auto [entity, instance] : world.view<MeshInstance>()) {
@@ -139,7 +205,7 @@ void SceneRays::place(const World& world) {
     placed_ = std::move(placed);
 }
 
-void SceneRays::update(const World& world) {
+void SceneRays::State::update(const World& world) {
     take_built();
     const Tick meshes = world.revision<MeshInstance>();
     const Tick transforms = world.revision<Transform>();
@@ -155,7 +221,7 @@ void SceneRays::update(const World& world) {
     transforms_at_ = transforms;
 }
 
-void SceneRays::update_and_wait(const World& world) {
+void SceneRays::State::update_and_wait(const World& world) {
     update(world);
     while (building()) {
         building_.wait();
@@ -165,7 +231,8 @@ void SceneRays::update_and_wait(const World& world) {
 
 /// The nearest triangle whose visible side faces the ray. `accepts(placed)` chooses among the parts.
 template <class Accepts>
-std::optional<SceneRays::Found> SceneRays::search(const candela::Ray& ray, Accepts&& accepts) const {
+std::optional<SceneRays::State::Found> SceneRays::State::search(const candela::Ray& ray,
+                                                                Accepts&& accepts) const {
     std::optional<Found> nearest;
     candela::Ray rest = ray;
     const auto visit_part = [&](std::uint32_t index) {
@@ -189,8 +256,8 @@ std::optional<SceneRays::Found> SceneRays::search(const candela::Ray& ray, Accep
     return nearest;
 }
 
-std::optional<SurfaceHit> SceneRays::first_hit(const Ray& ray, std::span<const Entity> ignored,
-                                               float most) const {
+std::optional<SurfaceHit> SceneRays::State::first_hit(const Ray& ray, std::span<const Entity> ignored,
+                                                      float most) const {
     const auto accepts = [&](const Placed& part) {
         return !std::binary_search(ignored.begin(), ignored.end(), part.entity);
     };
@@ -202,11 +269,35 @@ std::optional<SurfaceHit> SceneRays::first_hit(const Ray& ray, std::span<const E
                       glm::dot(normal, ray.direction) > 0.0F ? -normal : normal, found->t};
 }
 
-bool SceneRays::blocked(const glm::vec3& from, const glm::vec3& to) const {
+bool SceneRays::State::blocked(const glm::vec3& from, const glm::vec3& to) const {
     // A light is not hidden by the surface that it lies on.
     constexpr float before_end = 0.999F;
     const auto accepts = [](const Placed& part) { return !part.patch->blends; };
     return search({from, to - from, 0.0F, before_end}, accepts).has_value();
 }
 
-}  // namespace candela::sandbox
+SceneRays::SceneRays() : state_(std::make_unique<State>()) {}
+SceneRays::~SceneRays() = default;
+
+void SceneRays::update(const World& world) {
+    state_->update(world);
+}
+
+void SceneRays::update_and_wait(const World& world) {
+    state_->update_and_wait(world);
+}
+
+bool SceneRays::building() const {
+    return state_->building();
+}
+
+std::optional<SurfaceHit> SceneRays::first_hit(const Ray& ray, std::span<const Entity> ignored,
+                                               float most) const {
+    return state_->first_hit(ray, ignored, most);
+}
+
+bool SceneRays::blocked(const glm::vec3& from, const glm::vec3& to) const {
+    return state_->blocked(from, to);
+}
+
+}  // namespace candela::tools

@@ -1,6 +1,6 @@
-#include "sandbox/headless/canvas.hpp"
+#include "renderer/tools/canvas.hpp"
 
-namespace candela::sandbox {
+namespace candela::tools {
 
 Canvas::Canvas(gl::Device& device, glm::uvec2 size, Format format)
     : colour(device, "canvas", {.size = size, .format = format}), framebuffer(device, "canvas") {
@@ -9,4 +9,4 @@ Canvas::Canvas(gl::Device& device, glm::uvec2 size, Format format)
     framebuffer.check();
 }
 
-}  // namespace candela::sandbox
+}  // namespace candela::tools

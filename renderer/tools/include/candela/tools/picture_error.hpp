@@ -9,9 +9,10 @@
 #include <glm/vec2.hpp>
 #include <glm/vec3.hpp>
 
-#include "sandbox/files/picture.hpp"
+#include <candela/api.hpp>
+#include <candela/tools/picture.hpp>
 
-namespace candela::sandbox {
+namespace candela::tools {
 
 /// Which pixels count: one entry per pixel, not 0 if it counts; row 0 at the top.
 using Mask = std::vector<std::uint8_t>;
@@ -25,21 +26,22 @@ using Mask = std::vector<std::uint8_t>;
 /// pixels if it is empty: relMSE = mean(|a - r|² / (|r|² + 0.01 |m|²)). a and r are the RGB vectors of a
 /// pixel in the picture and in the reference, m is the mean vector of the reference. If the reference is
 /// black, the error of a black picture is 0 and that of any other is infinite. The noise of a reference is
-/// part of the error. Throws std::invalid_argument if the sizes differ, if a pixel is not finite or if no
+/// part of the error. Throws ToolError if the sizes differ, if a pixel is not finite or if no
 /// pixel counts.
-[[nodiscard]] double relative_mse(const Picture& picture, const Picture& reference,
-                                  std::span<const std::uint8_t> hit = {});
+[[nodiscard]] CANDELA_API double relative_mse(const Picture& picture, const Picture& reference,
+                                              std::span<const std::uint8_t> hit = {});
 
-/// Throws std::invalid_argument as `relative_mse` does; for other measures.
-void require_comparable(const Picture& picture, const Picture& reference, std::span<const std::uint8_t> hit);
+/// Throws ToolError as `relative_mse` does; for other measures.
+CANDELA_API void require_comparable(const Picture& picture, const Picture& reference,
+                                    std::span<const std::uint8_t> hit);
 
 /// The first pixel, from the top left, that contains NaN or infinity.
-[[nodiscard]] std::optional<glm::ivec2> first_not_finite(const Picture& picture);
+[[nodiscard]] CANDELA_API std::optional<glm::ivec2> first_not_finite(const Picture& picture);
 
 // The parts of the relMSE, for measures that are made of the same ones.
 
 /// |vector|².
-[[nodiscard]] double square(glm::dvec3 vector);
+[[nodiscard]] CANDELA_API double square(glm::dvec3 vector);
 
 /// part / whole; 0 divided by anything is 0, even by 0.
 [[nodiscard]] inline double ratio(double part, double whole) {
@@ -48,7 +50,7 @@ void require_comparable(const Picture& picture, const Picture& reference, std::s
 
 /// The squared relative error of a pixel, or of a pixel's change: |a - r|² / (|r|² + 0.01 |m|²), where
 /// `mean_square` is |m|².
-[[nodiscard]] double relative_square(glm::dvec3 a, glm::dvec3 r, double mean_square);
+[[nodiscard]] CANDELA_API double relative_square(glm::dvec3 a, glm::dvec3 r, double mean_square);
 
 /// The mean of `value(pixel)` over the pixels that count.
 template <typename Value>
@@ -64,6 +66,6 @@ template <typename Value>
 }
 
 /// The mean RGB vector over the pixels that count.
-[[nodiscard]] glm::dvec3 mean_vector(const Picture& picture, std::span<const std::uint8_t> hit);
+[[nodiscard]] CANDELA_API glm::dvec3 mean_vector(const Picture& picture, std::span<const std::uint8_t> hit);
 
-}  // namespace candela::sandbox
+}  // namespace candela::tools

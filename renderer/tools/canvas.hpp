@@ -6,9 +6,10 @@
 #include <glm/vec4.hpp>
 
 #include <candela/view.hpp>
-#include "sandbox/candela_private.hpp"
+#include "renderer/gl/device.hpp"
+#include "renderer/gl/texture.hpp"
 
-namespace candela::sandbox {
+namespace candela::tools {
 
 /// A picture on the GPU: a texture, and a framebuffer that draws into it.
 struct Canvas {
@@ -27,4 +28,4 @@ struct Canvas {
     [[nodiscard]] Target target() const { return {framebuffer.name(), size()}; }
 };
 
-}  // namespace candela::sandbox
+}  // namespace candela::tools

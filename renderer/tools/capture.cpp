@@ -1,15 +1,17 @@
-#include "sandbox/headless/capture.hpp"
+#include <candela/tools/capture.hpp>
 
 #include <cstddef>
-#include <stdexcept>
+#include <utility>
 
 #include <fmt/format.h>
 #include <fmt/ranges.h>
 
+#include <candela/tools/output_file.hpp>
+#include <candela/tools/tool_error.hpp>
 #include <candela/view.hpp>
-#include "sandbox/files/output_file.hpp"
+#include "renderer/tools/canvas.hpp"
 
-namespace candela::sandbox {
+namespace candela::tools {
 
 namespace {
 
@@ -21,7 +23,7 @@ class LinearOutput {
         linear.tone_map.enabled = false;
         linear.tone_map.exposure_ev = 0.0F;
         const std::vector<std::string> errors = renderer_.configure(linear);
-        if (!errors.empty()) throw std::runtime_error(fmt::format("{}", fmt::join(errors, "; ")));
+        if (!errors.empty()) throw ToolError(fmt::format("{}", fmt::join(errors, "; ")));
     }
     ~LinearOutput() {
         // The renderer had this configuration before. If it fails nonetheless, the linear one stays.
@@ -60,45 +62,83 @@ glm::vec2 pixel_jitter(int i, int count) {
     return pixel_sample(static_cast<std::uint32_t>(first + i));
 }
 
-Capture::Capture(Renderer& renderer, glm::ivec2 size)
-    : renderer_(&renderer),
-      size_(size),
-      linear_(device_of(renderer), size_, Format::rgba32f),
-      encoded_(device_of(renderer), size_, Format::rgba8) {}
+class Capture::State {
+ public:
+    State(Renderer& renderer, const gl::GetProc& get_proc, glm::uvec2 size)
+        : renderer_(renderer),
+          size_(size),
+          device_(get_proc, gl::DebugOutput::off),
+          linear_(device_, size, Format::rgba32f),
+          encoded_(device_, size, Format::rgba8) {}
 
-void Capture::add_pixels(std::vector<glm::vec3>& sum) const {
-    const std::vector<glm::vec4> texels = linear_.texels(device_of(*renderer_));
+    [[nodiscard]] Picture render(const World& world, Entity camera, int samples, CaptureReport& report);
+    [[nodiscard]] std::optional<double> estimate_error(const World& world, Entity camera);
+    [[nodiscard]] std::vector<std::uint8_t> tone_mapped(const Picture& picture);
+
+ private:
+    void add_pixels(std::vector<glm::vec3>& sum) const;
+
+    Renderer& renderer_;
+    glm::uvec2 size_;
+    gl::Device device_;
+    Canvas linear_;
+    Canvas encoded_;
+};
+
+void Capture::State::add_pixels(std::vector<glm::vec3>& sum) const {
+    const std::vector<glm::vec4> texels = linear_.texels(device_);
     for (std::size_t i = 0; i < sum.size(); ++i) sum[i] += glm::vec3(texels[i]);
 }
 
-Picture Capture::render(const World& world, Entity camera, int samples, CaptureReport& report) {
-    const LinearOutput linear(*renderer_);
-    const std::vector<FrameReport> earlier = renderer_->take_frames(true);
+Picture Capture::State::render(const World& world, Entity camera, int samples, CaptureReport& report) {
+    const LinearOutput linear(renderer_);
+    const std::vector<FrameReport> earlier = renderer_.take_frames(true);
     std::vector<glm::vec3> sum(static_cast<std::size_t>(size_.x) * size_.y);
     std::vector<FrameReport> frames;
-    const bool refines = renderer_->configuration().refinement.enabled;
+    const bool refines = renderer_.configuration().refinement.enabled;
     const int kept = refines ? 1 : samples;
     for (int sample = 0; sample < samples; ++sample) {
         const glm::vec2 jitter = refines ? glm::vec2(0.0F) : pixel_jitter(sample, samples);
-        renderer_->render(world, camera, linear_.target(), jitter);
+        renderer_.render(world, camera, linear_.target(), jitter);
         if (sample >= samples - kept) add_pixels(sum);
-        for (FrameReport& frame : renderer_->take_frames(true)) frames.push_back(std::move(frame));
+        for (FrameReport& frame : renderer_.take_frames(true)) frames.push_back(std::move(frame));
     }
     for (glm::vec3& pixel : sum) pixel /= static_cast<float>(kept);
-    report = {sum_up(frames), renderer_->report()};
+    report = {sum_up(frames), renderer_.report()};
     return flipped({glm::ivec2(size_), std::move(sum)});
 }
 
-std::optional<double> Capture::estimate_error(const World& world, Entity camera) {
+std::optional<double> Capture::State::estimate_error(const World& world, Entity camera) {
     const RenderView view{.camera = camera, .target = linear_.target(), .estimate_error = true};
-    renderer_->render(world, {&view, 1});
-    const std::optional<VplReport> vpls = renderer_->report().vpls;
+    renderer_.render(world, {&view, 1});
+    const std::optional<VplReport> vpls = renderer_.report().vpls;
     return vpls ? vpls->estimated_error : std::nullopt;
 }
 
+std::vector<std::uint8_t> Capture::State::tone_mapped(const Picture& picture) {
+    renderer_.tone_map(flipped(picture).pixels, encoded_.target());
+    return rgb_of_texels(size_, encoded_.texels(device_));
+}
+
+Capture::Capture(Renderer& renderer, const gl::GetProc& get_proc, glm::ivec2 size)
+    : state_(std::make_unique<State>(renderer, get_proc, glm::uvec2(size))) {}
+Capture::~Capture() = default;
+
+Picture Capture::render(const World& world, Entity camera, int samples, CaptureReport& report) {
+    return state_->render(world, camera, samples, report);
+}
+
+Picture Capture::render(const World& world, Entity camera, int samples) {
+    CaptureReport ignored;
+    return state_->render(world, camera, samples, ignored);
+}
+
+std::optional<double> Capture::estimate_error(const World& world, Entity camera) {
+    return state_->estimate_error(world, camera);
+}
+
 std::vector<std::uint8_t> Capture::tone_mapped(const Picture& picture) {
-    renderer_->tone_map(flipped(picture).pixels, encoded_.target());
-    return rgb_of_texels(size_, encoded_.texels(device_of(*renderer_)));
+    return state_->tone_mapped(picture);
 }
 
 void Capture::write(const std::filesystem::path& path, const Picture& picture) {
@@ -108,4 +148,4 @@ void Capture::write(const std::filesystem::path& path, const Picture& picture) {
     write_png(path, picture.size, tone_mapped(picture));
 }
 
-}  // namespace candela::sandbox
+}  // namespace candela::tools

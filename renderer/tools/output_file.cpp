@@ -1,21 +1,26 @@
-#include "sandbox/files/output_file.hpp"
+#include <candela/tools/output_file.hpp>
 
 #include <algorithm>
-#include <stdexcept>
 #include <system_error>
 
 #include <fmt/format.h>
 
-#include "sandbox/candela_private.hpp"
+#include <candela/scene/scene_error.hpp>
+#include <candela/tools/tool_error.hpp>
+#include "engine/import/output_files.hpp"
 
-namespace candela::sandbox {
+namespace candela::tools {
 
 namespace {
 
 namespace fs = std::filesystem;
 
 void replace_file(const fs::path& path, std::span<const std::byte> bytes) {
-    write_files(std::vector<OutputFile>{{path, {bytes.begin(), bytes.end()}}});
+    try {
+        write_files(std::vector<OutputFile>{{path, {bytes.begin(), bytes.end()}}});
+    } catch (const SceneError& error) {
+        throw ToolError(error.what());
+    }
 }
 
 }  // namespace
@@ -27,7 +32,7 @@ void write_file(const fs::path& path, std::span<const std::byte> bytes) {
     // A symbolic link stays a link: its target is replaced.
     if (fs::is_regular_file(status)) return replace_file(fs::canonical(path), bytes);
     if (const std::error_code error = write_bytes(path, "wb", bytes)) {
-        throw std::runtime_error(fmt::format("{}: cannot be written: {}", path.string(), error.message()));
+        throw ToolError(fmt::format("{}: cannot be written: {}", path.string(), error.message()));
     }
 }
 
@@ -42,4 +47,4 @@ std::string lower_extension(const fs::path& path) {
     return extension;
 }
 
-}  // namespace candela::sandbox
+}  // namespace candela::tools

@@ -1,14 +1,15 @@
-#include "sandbox/files/picture_error.hpp"
+#include <candela/tools/picture_error.hpp>
 
 #include <algorithm>
 #include <cmath>
-#include <stdexcept>
 #include <string_view>
 
 #include <fmt/format.h>
 #include <glm/geometric.hpp>
 
-namespace candela::sandbox {
+#include <candela/tools/tool_error.hpp>
+
+namespace candela::tools {
 
 namespace {
 
@@ -17,8 +18,7 @@ constexpr double floor_of_square = 0.01;
 
 void require_finite(const Picture& picture, std::string_view name) {
     if (const auto pixel = first_not_finite(picture)) {
-        throw std::invalid_argument(
-            fmt::format("{}: pixel ({}, {}) is not finite", name, pixel->x, pixel->y));
+        throw ToolError(fmt::format("{}: pixel ({}, {}) is not finite", name, pixel->x, pixel->y));
     }
 }
 
@@ -34,19 +34,18 @@ double relative_mse(const Picture& picture, const Picture& reference, std::span<
 
 void require_comparable(const Picture& picture, const Picture& reference, std::span<const std::uint8_t> hit) {
     if (picture.size != reference.size || picture.pixels.size() != reference.pixels.size()) {
-        throw std::invalid_argument(fmt::format("a picture of {}x{} cannot be compared with one of {}x{}",
-                                                picture.size.x, picture.size.y, reference.size.x,
-                                                reference.size.y));
+        throw ToolError(fmt::format("a picture of {}x{} cannot be compared with one of {}x{}", picture.size.x,
+                                    picture.size.y, reference.size.x, reference.size.y));
     }
     if (!hit.empty() && hit.size() != picture.pixels.size()) {
-        throw std::invalid_argument(fmt::format("a mask of {} pixels does not fit {}x{}", hit.size(),
-                                                picture.size.x, picture.size.y));
+        throw ToolError(fmt::format("a mask of {} pixels does not fit {}x{}", hit.size(), picture.size.x,
+                                    picture.size.y));
     }
     require_finite(picture, "the picture");
     require_finite(reference, "the reference");
     const bool any = hit.empty() ? !picture.pixels.empty()
                                  : std::any_of(hit.begin(), hit.end(), [](std::uint8_t h) { return h != 0; });
-    if (!any) throw std::invalid_argument("no pixel counts");
+    if (!any) throw ToolError("no pixel counts");
 }
 
 std::optional<glm::ivec2> first_not_finite(const Picture& picture) {
@@ -71,4 +70,4 @@ glm::dvec3 mean_vector(const Picture& picture, std::span<const std::uint8_t> hit
                      [&](std::size_t i) { return glm::dvec3(picture.pixels[i]); });
 }
 
-}  // namespace candela::sandbox
+}  // namespace candela::tools

@@ -2,17 +2,21 @@
 
 #include <cstdint>
 #include <filesystem>
+#include <memory>
 #include <optional>
 #include <vector>
 
-#include <candela/renderer.hpp>
-#include "sandbox/files/picture.hpp"
-#include "sandbox/headless/canvas.hpp"
+#include <glm/vec2.hpp>
 
-namespace candela::sandbox {
+#include <candela/api.hpp>
+#include <candela/gl_loader.hpp>
+#include <candela/renderer.hpp>
+#include <candela/tools/picture.hpp>
+
+namespace candela::tools {
 
 /// The offset of the i-th of `count` samples from the pixel centre, in pixels. The mean of all offsets is 0.
-[[nodiscard]] glm::vec2 pixel_jitter(int i, int count);
+[[nodiscard]] CANDELA_API glm::vec2 pixel_jitter(int i, int count);
 
 /// The cost of one picture: the sums over its samples, and the renderer's state after the last one.
 struct CaptureReport {
@@ -20,17 +24,23 @@ struct CaptureReport {
     Report state;
 };
 
-/// Renders pictures for output files, into its own framebuffer.
-class Capture {
+/// Renders pictures for output files, into framebuffers of its own. The renderer's context must be current in
+/// every call, including the destructor; its GL state is the same afterwards, as after Renderer::render.
+class CANDELA_API Capture {
  public:
-    /// Keeps a reference to the renderer and leaves its configuration unchanged. `size` is in pixels. Throws
-    /// gl::GlError if the driver does not support the size.
-    Capture(Renderer& renderer, glm::ivec2 size);
+    /// Keeps a reference to the renderer and leaves its configuration unchanged. `get_proc` is what the
+    /// renderer was made with; it is called only here. `size` is in pixels. Throws gl::GlError if the driver
+    /// does not support the size.
+    Capture(Renderer& renderer, const gl::GetProc& get_proc, glm::ivec2 size);
+    Capture(const Capture&) = delete;
+    Capture& operator=(const Capture&) = delete;
+    ~Capture();
 
     /// The mean of `samples` frames in linear radiance, jittered within the pixel (a box filter). With
     /// refinement the renderer does the jittering and averaging itself; then `samples` further frames go into
-    /// its running mean, and that mean is returned.
+    /// its running mean, and that mean is returned. Throws what Renderer::render throws.
     [[nodiscard]] Picture render(const World& world, Entity camera, int samples, CaptureReport& report);
+    [[nodiscard]] Picture render(const World& world, Entity camera, int samples);
 
     /// Renders the last frame again and returns VplReport::estimated_error; none without VPLs.
     [[nodiscard]] std::optional<double> estimate_error(const World& world, Entity camera);
@@ -39,16 +49,13 @@ class Capture {
     [[nodiscard]] std::vector<std::uint8_t> tone_mapped(const Picture& picture);
 
     /// Writes the format that the file extension names: .png tone-mapped, .exr and .pfm linear. Throws
-    /// std::runtime_error that names the file and the error.
+    /// ToolError that names the file and the error.
     void write(const std::filesystem::path& path, const Picture& picture);
 
  private:
-    void add_pixels(std::vector<glm::vec3>& sum) const;
+    class State;
 
-    Renderer* renderer_;
-    glm::uvec2 size_;
-    Canvas linear_;
-    Canvas encoded_;
+    std::unique_ptr<State> state_;
 };
 
-}  // namespace candela::sandbox
+}  // namespace candela::tools

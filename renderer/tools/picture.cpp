@@ -1,10 +1,9 @@
-#include "sandbox/files/picture.hpp"
+#include <candela/tools/picture.hpp>
 
 #include <algorithm>
 #include <bit>
 #include <cmath>
 #include <cstddef>
-#include <stdexcept>
 #include <string>
 #include <string_view>
 
@@ -12,10 +11,11 @@
 #include <stb/stb_image_write.h>
 
 #include <candela/scene/scene_error.hpp>
-#include "sandbox/candela_private.hpp"
-#include "sandbox/files/output_file.hpp"
+#include <candela/tools/output_file.hpp>
+#include <candela/tools/tool_error.hpp>
+#include "engine/import/exr.hpp"
 
-namespace candela::sandbox {
+namespace candela::tools {
 
 namespace {
 
@@ -25,7 +25,7 @@ static_assert(std::endian::native == std::endian::little, "PFM is written as mem
 static_assert(sizeof(glm::vec3) == 3 * sizeof(float));
 
 [[noreturn]] void fail(const fs::path& path, std::string_view error) {
-    throw std::runtime_error(fmt::format("{}: {}", path.string(), error));
+    throw ToolError(fmt::format("{}: {}", path.string(), error));
 }
 
 void require_size(const fs::path& path, glm::ivec2 size, std::size_t pixels) {
@@ -92,4 +92,4 @@ void write_pfm(const fs::path& path, const Picture& picture) {
     write_file(path, std::as_bytes(std::span(file)));
 }
 
-}  // namespace candela::sandbox
+}  // namespace candela::tools
