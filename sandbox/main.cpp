@@ -1,9 +1,9 @@
 #include <cstdio>
 #include <variant>
 
+#include <candela/tools/live_reference.hpp>
 #include "sandbox/command_line/options.hpp"
 #include "sandbox/command_line/run.hpp"
-#include "sandbox/reference/live_reference.hpp"
 
 using namespace candela::sandbox;
 
@@ -15,7 +15,7 @@ int run_app(int count, char** arguments) {
         std::fputs(exit->text.c_str(), exit->status == 0 ? stdout : stderr);
         return exit->status;
     }
-    return run(std::get<Options>(parsed), make_live_reference);
+    return run(std::get<Options>(parsed), candela::tools::make_live_reference);
 }
 
 }  // namespace

@@ -69,7 +69,7 @@ void draw_reference(AppState& state, const ReferenceView& reference, double fram
         comparison.mode = CompareMode::divider;
     }
     if (!reference.fault().empty()) text(reference.fault());
-    const ReferencePicture* picture = reference.picture();
+    const tools::ReferencePicture* picture = reference.picture();
     if (picture == nullptr) return text("tracing the first picture");
     text(fmt::format("{} paths a pixel, {:.0f} s", picture->samples, picture->seconds));
     constexpr double measurable = 0.05;  // noise above it may be far more than it is estimated to be

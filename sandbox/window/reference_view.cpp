@@ -4,7 +4,7 @@
 
 namespace candela::sandbox {
 
-void ReferenceView::follow(const std::optional<ReferenceRequest>& request) {
+void ReferenceView::follow(const std::optional<tools::ReferenceRequest>& request) {
     if (!tracer_ || request == request_) return;
     request_ = request;
     picture_.reset();
@@ -22,7 +22,7 @@ bool ReferenceView::update() {
     std::string fault = tracer_->fault();
     const bool new_fault = fault != fault_;
     fault_ = std::move(fault);
-    std::optional<ReferencePicture> newest = tracer_->newest();
+    std::optional<tools::ReferencePicture> newest = tracer_->newest();
     if (!newest) return new_fault;
     picture_ = std::move(newest);
     radiance_ = std::make_shared<const tools::Picture>(picture_->radiance);

@@ -6,29 +6,29 @@
 #include <optional>
 #include <string>
 
-#include "sandbox/reference/live_reference.hpp"
+#include <candela/tools/live_reference.hpp>
 
 namespace candela::sandbox {
 
-/// Makes a reference, or null where the path tracer is not built in; see make_live_reference.
-using MakeReference = std::function<std::unique_ptr<LiveReference>(std::function<void()> notify)>;
+/// Makes a reference, or null where the path tracer is not built in; see tools::make_live_reference.
+using MakeReference = std::function<std::unique_ptr<tools::LiveReference>(std::function<void()> notify)>;
 
 /// The reference of what the window shows: it is traced while nothing changes.
 class ReferenceView {
  public:
     ReferenceView() = default;
-    explicit ReferenceView(std::unique_ptr<LiveReference> tracer) : tracer_(std::move(tracer)) {}
+    explicit ReferenceView(std::unique_ptr<tools::LiveReference> tracer) : tracer_(std::move(tracer)) {}
 
     /// Whether the path tracer is built in.
     [[nodiscard]] bool is_built_in() const { return tracer_ != nullptr; }
 
     /// Starts over if the request is another one than before; stops without a request.
-    void follow(const std::optional<ReferenceRequest>& request);
+    void follow(const std::optional<tools::ReferenceRequest>& request);
     /// Takes the newest picture; whether there is a new one, or news of a fault.
     [[nodiscard]] bool update();
 
     /// Null until the first picture.
-    [[nodiscard]] const ReferencePicture* picture() const { return picture_ ? &*picture_ : nullptr; }
+    [[nodiscard]] const tools::ReferencePicture* picture() const { return picture_ ? &*picture_ : nullptr; }
     /// The radiance of `picture`, for the render thread; null until the first picture.
     [[nodiscard]] const std::shared_ptr<const tools::Picture>& radiance() const { return radiance_; }
     [[nodiscard]] const std::string& fault() const { return fault_; }
@@ -36,9 +36,9 @@ class ReferenceView {
     [[nodiscard]] std::optional<double> error_of(const tools::Picture& shown) const;
 
  private:
-    std::unique_ptr<LiveReference> tracer_;
-    std::optional<ReferenceRequest> request_;
-    std::optional<ReferencePicture> picture_;
+    std::unique_ptr<tools::LiveReference> tracer_;
+    std::optional<tools::ReferenceRequest> request_;
+    std::optional<tools::ReferencePicture> picture_;
     std::shared_ptr<const tools::Picture> radiance_;
     std::string fault_;
 };

@@ -44,9 +44,9 @@ FrameRequest frame_request(SessionState& state, glm::uvec2 size) {
     return request;
 }
 
-std::optional<ReferenceRequest> reference_request(SessionState& state, glm::uvec2 size) {
+std::optional<tools::ReferenceRequest> reference_request(SessionState& state, glm::uvec2 size) {
     if (!state.app.reference || !state.shown) return std::nullopt;
-    ReferenceRequest request;
+    tools::ReferenceRequest request;
     request.world = state.document->copy_of_world();
     request.camera = state.document->interaction.viewer();
     request.size = size;

@@ -47,6 +47,6 @@ struct SessionState {
 [[nodiscard]] FrameRequest frame_request(SessionState& state, glm::uvec2 size);
 
 /// The reference that it asks for: that of the scene at rest, so while something moves, a new one each time.
-[[nodiscard]] std::optional<ReferenceRequest> reference_request(SessionState& state, glm::uvec2 size);
+[[nodiscard]] std::optional<tools::ReferenceRequest> reference_request(SessionState& state, glm::uvec2 size);
 
 }  // namespace candela::sandbox

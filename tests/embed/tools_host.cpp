@@ -3,15 +3,18 @@
 
 #include <epoxy/gl.h>
 
+#include <chrono>
 #include <cstdlib>
 #include <cstring>
 #include <filesystem>
 #include <fstream>
 #include <iterator>
 #include <numbers>
+#include <thread>
 
 #include <candela/scene/sky_picture.hpp>
 #include <candela/tools/capture.hpp>
+#include <candela/tools/live_reference.hpp>
 #include <candela/tools/output_file.hpp>
 #include <candela/tools/picture_error.hpp>
 #include <candela/tools/run_report.hpp>
@@ -82,6 +85,24 @@ void check_radiance(const tools::Picture& picture, host::Checks& checks) {
     checks.check(picture.size == size, "the size of the picture");
     checks.check(std::abs(picture.pixels.at(middle).g - radiance) < 0.02F * radiance,
                  "the light on the shelf");
+}
+
+/// The same of the reference path tracer, where it is built in.
+void check_reference(const Room& room, host::Checks& checks) {
+    const std::unique_ptr<tools::LiveReference> tracer = tools::make_live_reference({});
+    if (!tracer) return;
+    tracer->start({.world = std::make_shared<const candela::World>(room.world),
+                   .camera = room.camera,
+                   .size = glm::uvec2(size),
+                   .samples = 2});
+    std::optional<tools::ReferencePicture> newest;
+    // Previews have no samples.
+    while (tracer->fault().empty() && (!newest || newest->samples == 0)) {
+        std::this_thread::sleep_for(std::chrono::milliseconds(10));
+        if (auto picture = tracer->newest()) newest = std::move(picture);
+    }
+    checks.check(tracer->fault().empty(), "a fault of the reference");
+    if (newest) check_radiance(newest->radiance, checks);
 }
 
 /// The pixels of a PFM file as write_pfm writes it.
@@ -161,6 +182,7 @@ int main() {
     host::Checks checks;
     const Room room = make_room();
     check_picking(room, checks);
+    check_reference(room, checks);
 
     std::string name = (fs::temp_directory_path() / "tools-host-XXXXXX").string();
     if (::mkdtemp(name.data()) == nullptr) return 1;

@@ -1,4 +1,4 @@
-#include "sandbox/reference/bsdf.hpp"
+#include "renderer/tools/reference/bsdf.hpp"
 
 #include <doctest/doctest.h>
 
@@ -11,8 +11,8 @@
 
 #include <glm/geometric.hpp>
 
-#include "sandbox/reference/hemispherical_albedo.hpp"
-#include "sandbox/reference/sampling.hpp"
+#include "renderer/tools/reference/hemispherical_albedo.hpp"
+#include "renderer/tools/reference/sampling.hpp"
 #include "tests/reference/gltf_model.hpp"
 
 TEST_SUITE("reference: BSDF") {

@@ -1,6 +1,6 @@
 #pragma once
 
-#include "sandbox/reference/path_tracer.hpp"
+#include "renderer/tools/reference/path_tracer.hpp"
 
 namespace candela::reference {
 

@@ -1,4 +1,4 @@
-#include "sandbox/reference/live_reference.hpp"
+#include <candela/tools/live_reference.hpp>
 
 #include <doctest/doctest.h>
 #include <cstdlib>
@@ -24,8 +24,8 @@ TEST_SUITE("reference: live") {
 using namespace candela;
 using reference::Estimate;
 using reference::Settings;
-using sandbox::ReferencePicture;
-using sandbox::ReferenceRequest;
+using tools::ReferencePicture;
+using tools::ReferenceRequest;
 using namespace std::chrono_literals;
 
 namespace {
@@ -89,7 +89,7 @@ class Live {
     std::mutex mutex_;
     std::condition_variable changed_;
     std::vector<ReferencePicture> pictures_;
-    std::unique_ptr<sandbox::LiveReference> reference_ = sandbox::make_live_reference([this] { take(); });
+    std::unique_ptr<tools::LiveReference> reference_ = tools::make_live_reference([this] { take(); });
 };
 
 // Before the first picture, the preview comes twice, the second time with more pixels.

@@ -1,7 +1,7 @@
 #pragma once
 
 #include <candela/tools/picture.hpp>
-#include "sandbox/reference/path_tracer.hpp"
+#include "renderer/tools/reference/path_tracer.hpp"
 #include "tests/renderer/scene_builder.hpp"
 
 namespace candela::reference {

@@ -1,4 +1,4 @@
-#include "sandbox/reference/path_tracer.hpp"
+#include "renderer/tools/reference/path_tracer.hpp"
 
 #include <doctest/doctest.h>
 

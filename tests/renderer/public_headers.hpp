@@ -21,4 +21,11 @@
 #include <candela/scene/sky_picture.hpp>
 #include <candela/scene/tangents.hpp>
 #include <candela/settings.hpp>
+#include <candela/tools/capture.hpp>
+#include <candela/tools/live_reference.hpp>
+#include <candela/tools/output_file.hpp>
+#include <candela/tools/picture_error.hpp>
+#include <candela/tools/run_report.hpp>
+#include <candela/tools/scene_rays.hpp>
+#include <candela/tools/tool_error.hpp>
 #include <candela/workload.hpp>

@@ -33,6 +33,7 @@ TEST_CASE("all exceptions of the library have one base class") {
     CHECK(std::is_base_of_v<Error, candela::GraphError>);
     CHECK(std::is_base_of_v<Error, candela::ContextError>);
     CHECK(std::is_base_of_v<Error, candela::gl::GlError>);
+    CHECK(std::is_base_of_v<Error, candela::tools::ToolError>);
     CHECK(std::is_base_of_v<candela::gl::GlError, candela::gl::ProgramError>);
 }
 

@@ -7,7 +7,7 @@
 #include <optional>
 #include <string>
 
-#include "sandbox/reference/path_tracer.hpp"
+#include "renderer/tools/reference/path_tracer.hpp"
 #include "tests/study/json_line.hpp"
 
 namespace candela::study {
