@@ -25,6 +25,7 @@
 #include "engine/bvh/traverse.hpp"
 #include "engine/bvh/two_level.hpp"
 #include "engine/bvh/wide.hpp"
+#include "engine/scene/check.hpp"
 
 namespace candela::tools {
 
@@ -133,6 +134,7 @@ class SceneRays::State {
 
 SceneRays::State::Patches SceneRays::State::build_patches(const Mesh& mesh, const std::stop_token& stop) {
     Patches patches;
+    if (fault_of(mesh, Strictness::usual)) return patches;
     for (const Primitive& primitive : mesh.primitives) {
         const std::size_t count = primitive.indices.size() / 3;
         for (std::size_t first = 0; first < count && !stop.stop_requested(); first += most_triangles) {
@@ -164,7 +166,9 @@ void SceneRays::State::take_built() {
 /// Also drops what no entity uses any more.
 void SceneRays::State::build_missing(const World& world) {
     std::set<std::shared_ptr<const Mesh>> used;
-    for (auto [entity, instance] : world.view<MeshInstance>()) used.insert(instance.mesh);
+    for (auto [entity, instance] : world.view<MeshInstance>()) {
+        if (instance.mesh) used.insert(instance.mesh);
+    }
     std::erase_if(meshes_, [&](const auto& mesh) { return !used.contains(mesh.first); });
     std::vector<std::shared_ptr<const Mesh>> missing;
     std::copy_if(used.begin(), used.end(), std::back_inserter(missing),

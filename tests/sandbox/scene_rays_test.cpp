@@ -123,6 +123,23 @@ TEST_CASE("a segment is blocked by what is between its ends, and not by what ble
     CHECK(rays.first_hit({{0, 0, 5}, {0, 0, -1}}).value().entity == glass);
 }
 
+TEST_CASE("meshes that cannot be drawn are not found") {
+    World world;
+    const Entity sound = add_mesh(world, square(1.0F), {.translation = {0.0F, 0.0F, -2.0F}});
+    add_mesh(world, nullptr, {});
+    Mesh no_material = *square(1.0F);
+    no_material.primitives[0].material = nullptr;
+    add_mesh(world, std::make_shared<const Mesh>(no_material), {});
+    Mesh lost_index = *square(1.0F);
+    lost_index.primitives[0].indices[3] = 4;  // of four vertices
+    add_mesh(world, std::make_shared<const Mesh>(lost_index), {});
+    tools::SceneRays rays;
+    rays.update_and_wait(world);
+    const auto hit = rays.first_hit(along_view);
+    REQUIRE(hit);
+    CHECK(hit->entity == sound);
+}
+
 TEST_CASE("random rays meet what testing every triangle meets, under parents that scale and rotate") {
     World world;
     std::mt19937 random(1);

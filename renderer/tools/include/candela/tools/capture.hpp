@@ -36,7 +36,7 @@ class CANDELA_API Capture {
     Capture& operator=(const Capture&) = delete;
     ~Capture();
 
-    /// The mean of `samples` frames in linear radiance, jittered within the pixel (a box filter). With
+    /// The mean of `samples` >= 1 frames in linear radiance, jittered within the pixel (a box filter). With
     /// refinement the renderer does the jittering and averaging itself; then `samples` further frames go into
     /// its running mean, and that mean is returned. Throws what Renderer::render throws.
     [[nodiscard]] Picture render(const World& world, Entity camera, int samples, CaptureReport& report);
@@ -45,7 +45,8 @@ class CANDELA_API Capture {
     /// Renders the last frame again and returns VplReport::estimated_error; none without VPLs.
     [[nodiscard]] std::optional<double> estimate_error(const World& world, Entity camera);
 
-    /// The picture through the renderer's tone map: sRGB, 3 bytes per pixel, row 0 at the top.
+    /// A picture of the same size through the renderer's tone map: sRGB, 3 bytes per pixel, row 0 at the top.
+    /// Throws gl::GlError if it has another size.
     [[nodiscard]] std::vector<std::uint8_t> tone_mapped(const Picture& picture);
 
     /// Writes the format that the file extension names: .png tone-mapped, .exr and .pfm linear. Throws

@@ -22,7 +22,8 @@ struct SurfaceHit {
 };
 
 /// Finds surfaces of a world along rays, on the CPU. A surface is what a picture shows: the backs of
-/// single-sided materials are none. Deformed meshes count as undeformed, and holes of masks as surface.
+/// single-sided materials are none, and neither are meshes that Renderer::render leaves out. Deformed meshes
+/// count as undeformed, and holes of masks as surface.
 ///
 /// Each mesh has a hierarchy of its own, in its local space, built in another thread; until that is done, the
 /// mesh is not found. Moving an object only changes the small hierarchy over all objects.
@@ -35,7 +36,8 @@ class CANDELA_API SceneRays {
     SceneRays& operator=(const SceneRays&) = delete;
 
     /// Brings the searched surfaces up to date with the world, as far as their hierarchies have been built.
-    /// Takes no time if no mesh or transform has changed since the last call.
+    /// Takes no time if no mesh or transform has changed since the last call. Throws SceneError if an
+    /// entity's parents form a cycle or were destroyed.
     void update(const World& world);
     /// The same, but waits until all hierarchies have been built.
     void update_and_wait(const World& world);
