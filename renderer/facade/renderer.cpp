@@ -21,6 +21,12 @@ std::vector<std::string> Renderer::configure(const Configuration& configuration)
     return state_->configure(configuration);
 }
 
+std::vector<std::string> Renderer::prepare(const Configuration& configuration, const World& world,
+                                           std::span<const RenderView> views,
+                                           const CompileProgress& progress) {
+    return state_->prepare(configuration, world, views, progress);
+}
+
 const Configuration& Renderer::configuration() const {
     return state_->configuration();
 }

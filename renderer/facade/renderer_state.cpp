@@ -12,6 +12,7 @@
 
 #include <glm/geometric.hpp>
 
+#include <candela/error.hpp>
 #include <candela/graph/compile.hpp>
 #include <candela/graph/describe.hpp>
 #include <candela/scene/scene_error.hpp>
@@ -69,10 +70,15 @@ bool same_radiance(Configuration a, const Configuration& b) {
     return a == b;
 }
 
-/// Whether the host has drawn the view's surfaces with their material.
-bool has_material(const RenderView& view) {
-    return view.surfaces && view.surfaces->material != 0;
+ViewShape shape_of(const RenderView& view) {
+    return {.target = view.target.size,
+            .host_surfaces = view.surfaces.has_value(),
+            .host_material = view.surfaces && view.surfaces->material != 0,
+            .keep = view.keep,
+            .estimate_error = view.estimate_error};
 }
+
+constexpr const char* no_view = "a frame needs at least one view";
 
 std::set<std::string, std::less<>> host_passes(const FrameHandles& frame) {
     std::set<std::string, std::less<>> names;
@@ -100,12 +106,12 @@ Renderer::State::State(const gl::GetProc& get_proc, const RendererOptions& optio
     : gpu_(get_proc, shader_library(options.shader_directory), options),
       backend_(gpu_.device()),
       runtime_(backend_) {
-    switch_to(configuration_, shape_, {});
+    install(declare(configuration_, shape_, {}), configuration_, shape_, {});
 }
 
 std::vector<std::string> Renderer::State::configure(const Configuration& configuration) {
     std::vector<std::string> errors = validate(configuration);
-    if (!errors.empty() || configuration == configuration_) return errors;
+    if (!errors.empty() || (compiled_ && configuration == configuration_)) return errors;
     if (differ_in_limit(configuration, configuration_)) {
         configuration_ = configuration;
         return {};
@@ -126,7 +132,7 @@ std::vector<std::string> Renderer::State::try_to(const Configuration& configurat
                                                  std::vector<Extension> extensions) {
     try {
         require_room_for_maps(configuration);
-        switch_to(configuration, shape_, std::move(extensions));
+        switch_to(configuration, expected_shape(), std::move(extensions));
     } catch (const std::exception& error) {
         return {error.what()};
     }
@@ -154,12 +160,27 @@ void Renderer::State::remove_extension(std::string_view name) {
     }
 }
 
-void Renderer::State::switch_to(const Configuration& configuration, const FrameShape& shape,
-                                std::vector<Extension> extensions) {
+Renderer::State::Declared Renderer::State::declare(const Configuration& configuration,
+                                                   const FrameShape& shape,
+                                                   std::span<const Extension> extensions) {
     FrameGraph graph;
     FrameHandles frame = build_frame(graph, gpu_, configuration, shape, extensions);
-    runtime_.switch_to(compile(std::move(graph)).take());
-    frame_ = std::move(frame);
+    return {compile(std::move(graph)).take(), std::move(frame)};
+}
+
+void Renderer::State::switch_to(const Configuration& configuration, const FrameShape& shape,
+                                std::vector<Extension> extensions) {
+    gpu_.programs().forget_requests();
+    Declared declared = declare(configuration, shape, extensions);
+    gpu_.programs().compile();
+    install(std::move(declared), configuration, shape, std::move(extensions));
+    compiled_ = true;
+}
+
+void Renderer::State::install(Declared declared, const Configuration& configuration, const FrameShape& shape,
+                              std::vector<Extension> extensions) {
+    runtime_.switch_to(std::move(declared.graph));
+    frame_ = std::move(declared.frame);
     backend_.set_host_passes(host_passes(frame_));
     const bool same = shape == shape_ && same_radiance(configuration, configuration_);
     if (!same || abandoned_) ++refinement_clock_.epoch;
@@ -170,9 +191,49 @@ void Renderer::State::switch_to(const Configuration& configuration, const FrameS
     last_passes_.clear();
 }
 
+/// What the frames of these views of the world may be like, as far as that decides on their programs.
+std::vector<FrameShape> Renderer::State::shapes_to_prepare(const Configuration& configuration,
+                                                           const World& world,
+                                                           std::span<const RenderView> views) {
+    FrameShape shape{.views = {},
+                     .quality = {},
+                     .contents = contents_of(world, gpu_.scene_check(), configuration.vpls.count).of_frame,
+                     .receivers = !receivers_.empty()};
+    for (const RenderView& view : views) shape.views.push_back(shape_of(view));
+    std::vector<FrameShape> shapes{shape};
+    if (budget_ms(configuration) > 0.0) {
+        shape.quality = interleaved_quality;
+        shapes.push_back(shape);
+    }
+    return shapes;
+}
+
+std::vector<std::string> Renderer::State::prepare(const Configuration& configuration, const World& world,
+                                                  std::span<const RenderView> views,
+                                                  const CompileProgress& progress) {
+    gpu_.require_context();
+    if (views.empty()) throw gl::GlError(no_view);
+    std::vector<std::string> errors = validate(configuration);
+    if (!errors.empty()) return errors;
+    // Their passes are the host's: of each extension, only what it needs of the renderer counts.
+    std::vector<Extension> extensions = extensions_;
+    for (Extension& extension : extensions) extension.declare = [](FrameGraph&, ViewFrame&) {};
+    const std::vector<FrameShape> shapes = shapes_to_prepare(configuration, world, views);
+    prepared_ = shapes.front();
+    gpu_.programs().forget_requests();
+    try {
+        require_room_for_maps(configuration);
+        for (const FrameShape& shape : shapes) (void)declare(configuration, shape, extensions);
+        gpu_.programs().compile(progress);
+    } catch (const Error& error) {
+        return {error.what()};
+    }
+    return {};
+}
+
 /// Throws gl::GlError if there are none, or if a target is not possible.
 void Renderer::State::require_views(std::span<const RenderView> views) const {
-    if (views.empty()) throw gl::GlError("a frame needs at least one view");
+    if (views.empty()) throw gl::GlError(no_view);
     const gl::Device& device = gpu_.device();
     for (const RenderView& view : views) {
         require_possible(device, view.target);
@@ -229,16 +290,12 @@ bool Renderer::State::render(const World& world, std::span<const RenderView> vie
     std::vector<ViewRequest> requests;
     std::vector<ViewRequest> without_jitter;
     for (const RenderView& view : views) {
-        shape.views.push_back({.target = view.target.size,
-                               .host_surfaces = view.surfaces.has_value(),
-                               .host_material = has_material(view),
-                               .keep = view.keep,
-                               .estimate_error = view.estimate_error});
+        shape.views.push_back(shape_of(view));
         requests.push_back({view.camera, view.target.size, view.jitter});
         without_jitter.push_back({view.camera, view.target.size});
     }
     shape.quality = quality_now(world, std::move(requests));
-    if (shape != shape_) switch_to(configuration_, shape, extensions_);
+    if (!compiled_ || shape != shape_) switch_to(configuration_, shape, extensions_);
     set_views(views);
     // The mean starts over after a frame that threw, but not after one that was abandoned.
     if (!std::exchange(completed_, false)) {
@@ -335,10 +392,10 @@ std::vector<glm::vec3> Renderer::State::received_light() const {
 }
 
 /// Frame budget in milliseconds; 0: no limit.
-double Renderer::State::budget_ms() const {
+double Renderer::State::budget_ms(const Configuration& configuration) const {
     constexpr double on_hardware = 16.0;
     constexpr double on_software = 60.0;
-    if (configuration_.frame_budget_ms) return static_cast<double>(*configuration_.frame_budget_ms);
+    if (configuration.frame_budget_ms) return static_cast<double>(*configuration.frame_budget_ms);
     return gpu_.device().is_software() ? on_software : on_hardware;
 }
 
@@ -350,7 +407,7 @@ Quality Renderer::State::quality_now(const World& world, std::vector<ViewRequest
     last_revision_ = world.revision();
     last_requests_ = std::move(requests);
     if (moved) last_move_ = now;
-    if (budget_ms() == 0.0 || now - last_move_ > settled) return {};
+    if (budget_ms(configuration_) == 0.0 || now - last_move_ > settled) return {};
     return moved ? quality_in_motion_ : shape_.quality;
 }
 
@@ -371,10 +428,10 @@ FrameContents Renderer::State::contents_now(const World& world) {
 
 void Renderer::State::learn_cost(const PendingFrame& frame) {
     const FrameCost cost = cost_of(frame.report);
-    if (budget_ms() > 0.0 && cost.pixels > 0.0) {
+    if (budget_ms(configuration_) > 0.0 && cost.pixels > 0.0) {
         const std::uint32_t configured =
             interleaving(configuration_.interleave, configuration_.vpls.count, shape_.views.front().target);
-        quality_in_motion_ = choose_quality(cost, frame.quality, configured, budget_ms());
+        quality_in_motion_ = choose_quality(cost, frame.quality, configured, budget_ms(configuration_));
     }
 }
 

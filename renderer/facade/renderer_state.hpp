@@ -4,6 +4,7 @@
 #include <chrono>
 #include <cstdint>
 #include <deque>
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -23,6 +24,9 @@ class CANDELA_PRIVATE Renderer::State {
     State(const gl::GetProc& get_proc, const RendererOptions& options);
 
     [[nodiscard]] std::vector<std::string> configure(const Configuration& configuration);
+    [[nodiscard]] std::vector<std::string> prepare(const Configuration& configuration, const World& world,
+                                                   std::span<const RenderView> views,
+                                                   const CompileProgress& progress);
     [[nodiscard]] const Configuration& configuration() const { return configuration_; }
     bool render(const World& world, std::span<const RenderView> views, const FrameOptions& options);
     [[nodiscard]] FrameResults results(std::size_t view) const;
@@ -61,8 +65,25 @@ class CANDELA_PRIVATE Renderer::State {
         bool operator==(const HostContent&) const = default;
     };
 
+    /// A frame that is declared: its programs are requested.
+    struct Declared {
+        CompiledGraph graph;
+        FrameHandles frame;
+    };
+
+    [[nodiscard]] Declared declare(const Configuration& configuration, const FrameShape& shape,
+                                   std::span<const Extension> extensions);
+    void install(Declared declared, const Configuration& configuration, const FrameShape& shape,
+                 std::vector<Extension> extensions);
     void switch_to(const Configuration& configuration, const FrameShape& shape,
                    std::vector<Extension> extensions);
+    /// What the next frame is expected to be like.
+    [[nodiscard]] const FrameShape& expected_shape() const {
+        return !compiled_ && prepared_ ? *prepared_ : shape_;
+    }
+    [[nodiscard]] std::vector<FrameShape> shapes_to_prepare(const Configuration& configuration,
+                                                            const World& world,
+                                                            std::span<const RenderView> views);
     [[nodiscard]] std::vector<std::string> try_to(const Configuration& configuration,
                                                   std::vector<Extension> extensions);
     void require_room_for_maps(const Configuration& configuration) const;
@@ -72,7 +93,7 @@ class CANDELA_PRIVATE Renderer::State {
     void set_surfaces(const HostSurfaceInputs& inputs, const HostSurfaces& surfaces, HostContent& last);
     [[nodiscard]] const ViewHandles& view_handles(std::size_t view) const;
     [[nodiscard]] FrameContents contents_now(const World& world);
-    [[nodiscard]] double budget_ms() const;
+    [[nodiscard]] double budget_ms(const Configuration& configuration) const;
     [[nodiscard]] Quality quality_now(const World& world, std::vector<ViewRequest> requests);
     void learn_cost(const PendingFrame& frame);
     void set_refinement_clock();
@@ -90,6 +111,8 @@ class CANDELA_PRIVATE Renderer::State {
     Configuration configuration_;
     std::vector<Extension> extensions_;
     std::vector<Receiver> receivers_;
+    bool compiled_ = false;                     // whether the programs of the graph are: not before the first
+    std::optional<FrameShape> prepared_;        // the last frame that was
     FrameShape shape_;                          // of the last frame
     std::array<Tick, 2> contents_revisions_{};  // of the components that determine the contents
     std::uint32_t contents_vpls_ = 0;           // VplSettings::count then

@@ -24,6 +24,9 @@ struct FrameCost {
 /// and g the ratio of the interleave factors (measured / wanted).
 [[nodiscard]] double expected_ms(const FrameCost& cost, const Quality& measured, const Quality& wanted);
 
+/// Of the qualities below the best, all with the same passes: one with full resolution.
+inline constexpr Quality interleaved_quality{1.0F, 8};
+
 /// The best quality whose expected time fits the budget, based on one measured frame; the lowest quality if
 /// none fits. A better quality than the measured one must fit with a larger margin, so that the choice does
 /// not oscillate. `configured`: the interleave factor that the configuration asks for, a lower bound.

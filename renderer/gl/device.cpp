@@ -65,6 +65,17 @@ Limits get_limits(const Functions& gl, bool anisotropic) {
     return limits;
 }
 
+/// The function by which the host limits the threads on which the driver compiles; null without them.
+PFNGLMAXSHADERCOMPILERTHREADSKHRPROC find_compiler_threads(const GetProc& get_proc, const Device& device) {
+    const char* name = nullptr;
+    if (device.has_extension("GL_KHR_parallel_shader_compile")) {
+        name = "glMaxShaderCompilerThreadsKHR";
+    } else if (device.has_extension("GL_ARB_parallel_shader_compile")) {
+        name = "glMaxShaderCompilerThreadsARB";
+    }
+    return name == nullptr ? nullptr : reinterpret_cast<PFNGLMAXSHADERCOMPILERTHREADSKHRPROC>(get_proc(name));
+}
+
 Functions load_checked(const GetProc& get_proc) {
     require_version(get_proc);
     return load_functions(get_proc);
@@ -74,11 +85,13 @@ Functions load_checked(const GetProc& get_proc) {
 
 Device::Device(const GetProc& get_proc, DebugOutput debug_output, DebugReceiver receiver)
     : functions_(load_checked(get_proc)),
+      vendor_(get_string(functions_.GetString, GL_VENDOR)),
       renderer_(get_string(functions_.GetString, GL_RENDERER)),
       version_(get_string(functions_.GetString, GL_VERSION)),
       extensions_(get_extensions(functions_)),
       limits_(get_limits(functions_, has_extension("GL_ARB_texture_filter_anisotropic") ||
                                          has_extension("GL_EXT_texture_filter_anisotropic"))) {
+    functions_.MaxShaderCompilerThreadsKHR = find_compiler_threads(get_proc, *this);
     if (debug_output == DebugOutput::on) log_.emplace(functions_, std::move(receiver));
 }
 

@@ -62,6 +62,7 @@ class Device {
 
     [[nodiscard]] const Functions& gl() const { return functions_; }
     [[nodiscard]] const Limits& limits() const { return limits_; }
+    [[nodiscard]] const std::string& vendor() const { return vendor_; }      ///< GL_VENDOR
     [[nodiscard]] const std::string& renderer() const { return renderer_; }  ///< GL_RENDERER
     [[nodiscard]] const std::string& version() const { return version_; }    ///< GL_VERSION
     [[nodiscard]] bool is_software() const;  ///< whether the driver renders on the CPU
@@ -86,6 +87,7 @@ class Device {
     friend class Object;
 
     Functions functions_;
+    std::string vendor_;
     std::string renderer_;
     std::string version_;
     std::vector<std::string> extensions_;  ///< sorted

@@ -135,6 +135,9 @@
     X(LinkProgram, LINKPROGRAM) \
     X(IsProgram, ISPROGRAM) \
     X(UseProgram, USEPROGRAM) \
+    X(ProgramParameteri, PROGRAMPARAMETERI) \
+    X(GetProgramBinary, GETPROGRAMBINARY) \
+    X(ProgramBinary, PROGRAMBINARY) \
     X(GetProgramiv, GETPROGRAMIV) \
     X(GetProgramInfoLog, GETPROGRAMINFOLOG) \
     X(GetProgramInterfaceiv, GETPROGRAMINTERFACEIV) \
@@ -183,6 +186,8 @@ struct Functions {
 #define CANDELA_GL_MEMBER(name, capitals) PFNGL##capitals##PROC name = nullptr;
     CANDELA_GL_FUNCTIONS(CANDELA_GL_MEMBER)
 #undef CANDELA_GL_MEMBER
+    /// Of GL_KHR_parallel_shader_compile or GL_ARB_parallel_shader_compile; null if the driver has neither.
+    PFNGLMAXSHADERCOMPILERTHREADSKHRPROC MaxShaderCompilerThreadsKHR = nullptr;
     // NOLINTEND(readability-identifier-naming)
 };
 
@@ -191,7 +196,7 @@ struct Functions {
 
 void set_enabled(const Functions& gl, GLenum capability, bool enabled);
 
-/// Looks up every function. Throws GlError that names the first missing one.
+/// Looks up every function of OpenGL 4.5. Throws GlError that names the first missing one.
 [[nodiscard]] Functions load_functions(const GetProc& get_proc);
 
 }  // namespace candela::gl

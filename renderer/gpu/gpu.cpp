@@ -53,18 +53,6 @@ std::string label_of_vertices(const Gpu& gpu) {
     return fmt::format("no vertices of {}", static_cast<const void*>(&gpu));
 }
 
-/// `defined`: NAME for NAME as 1, or NAME=VALUE.
-std::vector<gl::Define> defines_of(const std::vector<std::string>& defined) {
-    std::vector<gl::Define> defines;
-    defines.reserve(defined.size());
-    for (const std::string& word : defined) {
-        const std::size_t equals = word.find('=');
-        defines.push_back({.name = word.substr(0, equals),
-                           .value = equals == std::string::npos ? "1" : word.substr(equals + 1)});
-    }
-    return defines;
-}
-
 }  // namespace
 
 void require_limits(const gl::Limits& limits) {
@@ -93,7 +81,7 @@ Gpu::Gpu(const gl::GetProc& get_proc, gl::ShaderLibrary shaders, const RendererO
       checked_(options.checked),
       device_(get_proc, options.debug_output ? gl::DebugOutput::on : gl::DebugOutput::off,
               [this](const gl::DebugMessage& message) { log_.warn("OpenGL: " + message.text); }),
-      shaders_(std::move(shaders)),
+      programs_(device_, std::move(shaders), options.program_cache, log_),
       mesh_vertices_(make_mesh_vertices(device_)),
       mesh_vertices_with_second_uvs_(make_mesh_vertices_with_second_uvs(device_)),
       no_vertices_(device_, label_of_vertices(*this)),
@@ -119,19 +107,6 @@ void Gpu::require_context() const {
 const gl::Texture& Gpu::mirror_shares() {
     if (!mirror_shares_) mirror_shares_ = make_mirror_shares(device_);
     return *mirror_shares_;
-}
-
-const gl::Program& Gpu::program(const std::vector<std::string>& stages,
-                                const std::vector<std::string>& defined) {
-    ProgramKey key(stages, defined);
-    const auto found = programs_.find(key);
-    if (found != programs_.end()) return found->second;
-    return programs_.emplace(std::move(key), gl::compile(device_, shaders_, stages, defines_of(defined)))
-        .first->second;
-}
-
-std::string Gpu::source_part(std::string_view file, const std::vector<std::string>& defined) const {
-    return gl::assemble_part(shaders_, file, defines_of(defined));
 }
 
 void Gpu::set_target(const Target& target) const {

@@ -1,11 +1,8 @@
 #pragma once
 
 #include <cstdint>
-#include <map>
 #include <optional>
 #include <string>
-#include <string_view>
-#include <utility>
 #include <vector>
 
 #include <candela/renderer_options.hpp>
@@ -16,6 +13,7 @@
 #include "renderer/gl/shader_source.hpp"
 #include "renderer/gl/texture.hpp"
 #include "renderer/gpu/log.hpp"
+#include "renderer/gpu/programs.hpp"
 #include "renderer/passes/scene/scene_check.hpp"
 
 namespace candela {
@@ -45,14 +43,13 @@ class Gpu {
     /// Throws gl::GlError if the current context is not that of construction.
     void require_context() const;
 
-    /// The program of these stage files with these names defined: NAME as 1, or NAME=VALUE. Compiled at the
-    /// first request, then cached. The reference is valid as long as the Gpu. Throws gl::ProgramError.
+    /// For a pass that is being declared: see Programs::request. Ready when the pass runs.
     [[nodiscard]] const gl::Program& program(const std::vector<std::string>& stages,
-                                             const std::vector<std::string>& defined = {});
-
-    /// Source of a shader file with its includes and the same kind of names, as a part of a host's shader.
-    [[nodiscard]] std::string source_part(std::string_view file,
-                                          const std::vector<std::string>& defined) const;
+                                             const std::vector<std::string>& defined = {}) {
+        return programs_.request(stages, defined);
+    }
+    [[nodiscard]] Programs& programs() { return programs_; }
+    [[nodiscard]] const Programs& programs() const { return programs_; }
 
     /// A vertex array for candela::Vertex (binding 0) and instance indices (binding 1): see draw_scene.hpp.
     [[nodiscard]] gl::VertexArray& mesh_vertices() { return mesh_vertices_; }
@@ -96,9 +93,7 @@ class Gpu {
     SceneCheck scene_check_;
     bool checked_;
     gl::Device device_;
-    gl::ShaderLibrary shaders_;
-    using ProgramKey = std::pair<std::vector<std::string>, std::vector<std::string>>;
-    std::map<ProgramKey, gl::Program> programs_;
+    Programs programs_;
     gl::VertexArray mesh_vertices_;
     gl::VertexArray mesh_vertices_with_second_uvs_;
     gl::VertexArray no_vertices_;  // for geometry that shaders generate

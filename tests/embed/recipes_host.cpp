@@ -99,6 +99,9 @@ void run_recipes(candela::Renderer& renderer, const candela::gl::GetProc& get_pr
     int selected = 0;
     const auto select = [&](candela::Entity, glm::vec3) { ++selected; };
 
+    std::size_t compiled = 0;
+    const auto draw_progress = [&](std::size_t done, std::size_t) { compiled = done; };
+
     // Whatever a piece does, frames of the usual view go on, and are lit.
     const auto end_of = [&](const std::string& piece) {
         checks.check(glGetError() == GL_NO_ERROR, piece + ": GL reported an error");
@@ -108,6 +111,7 @@ void run_recipes(candela::Renderer& renderer, const candela::gl::GetProc& get_pr
         checks.check(brightest > 0.1F, piece + ": the picture is dark");
     };
 #include "recipes.inc"
+    checks.check(compiled > 0, "shaders are compiled ahead");
     checks.check(shown == 1, "a frame that is wanted is complete");
     checks.check(selected == 1, "the ground is under the pointer");
 }

@@ -16,7 +16,7 @@
 #include <candela/graph/execute.hpp>
 #include <candela/scene/tangents.hpp>
 #include "renderer/facade/device_of.hpp"
-#include "renderer/gl/program.hpp"
+#include "renderer/gl/compiling_program.hpp"
 #include "tests/renderer/path_fixture.hpp"
 #include "tests/renderer/texels.hpp"
 #include "tests/throws.hpp"

@@ -7,7 +7,7 @@
 #include <string>
 #include <vector>
 
-#include "renderer/gl/program.hpp"
+#include "renderer/gl/compiling_program.hpp"
 #include "renderer/gl/texture.hpp"
 #include "tests/renderer/context_fixture.hpp"
 

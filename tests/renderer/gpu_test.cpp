@@ -56,7 +56,8 @@ TEST_CASE_FIXTURE(GlFixture, "each step of a computation sees what those before 
     ComputeSteps steps(gpu);
     std::uint32_t written = 0;
     for (const gl::Uniforms& part : loop_parts(count, 300)) {
-        steps.run(gpu.program({"sum.comp"}), {}, part + gl::Uniforms{{"count", count}, {"written", written}});
+        steps.run(gpu.programs().compiled({"sum.comp"}, {}), {},
+                  part + gl::Uniforms{{"count", count}, {"written", written}});
         written = 1 - written;
     }
     const std::vector<std::uint32_t> result = sums.download<std::uint32_t>();

@@ -6,7 +6,7 @@
 #include <string>
 #include <vector>
 
-#include "renderer/gl/program.hpp"
+#include "renderer/gl/compiling_program.hpp"
 #include "renderer/gpu/gpu_types.hpp"
 #include "tests/renderer/context_fixture.hpp"
 

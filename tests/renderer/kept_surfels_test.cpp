@@ -115,6 +115,7 @@ class Visibility {
             pass.read(cover_, Usage::copy);
             pass.side_effect();
         });
+        gpu_.programs().compile();
         runtime_.switch_to(compile(std::move(graph)).take());
     }
 

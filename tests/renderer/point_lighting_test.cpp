@@ -8,7 +8,7 @@
 #include <vector>
 
 #include <candela/graph/execute.hpp>
-#include "renderer/gl/program.hpp"
+#include "renderer/gl/compiling_program.hpp"
 #include "renderer/gl/texture.hpp"
 #include "tests/renderer/path_fixture.hpp"
 

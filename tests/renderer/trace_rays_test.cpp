@@ -131,7 +131,7 @@ class Tracer {
     Gpu gpu_;
     gl::GraphBackend backend_{gpu_.device()};
     GraphRuntime runtime_{backend_};
-    const gl::Program& program_{gpu_.program({"trace_rays.comp"})};
+    const gl::Program& program_{gpu_.programs().compiled({"trace_rays.comp"}, {})};
     std::uint32_t ray_count_ = 0;
     std::vector<gpu::TraceTriangle> triangles_;
 };

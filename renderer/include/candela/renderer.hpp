@@ -2,6 +2,7 @@
 
 #include <cstddef>
 #include <cstdint>
+#include <functional>
 #include <memory>
 #include <span>
 #include <string>
@@ -30,13 +31,17 @@ class Gpu;
 /// Output of Renderer::describe: plain text, Graphviz DOT, or JSON.
 enum class GraphFormat : std::uint8_t { text, dot, json };
 
+/// How many shader programs are compiled, of how many that are needed. Returns whether to go on.
+using CompileProgress = std::function<bool(std::size_t done, std::size_t total)>;
+
 /// Renders worlds. An instance belongs to one GL context, which must be current in every call, including the
 /// destructor. Instances share nothing. Not synchronised.
 class CANDELA_API Renderer {
  public:
     /// `get_proc` returns the addresses of GL functions, as glfwGetProcAddress does; it is called only here.
     /// Throws gl::GlError if no context is current, if it offers less than OpenGL 4.5, lacks a function or
-    /// has a limit that is too low, and gl::ProgramError if a shader does not compile.
+    /// has a limit that is too low, and gl::ProgramError if a shader file is missing. Shaders are compiled
+    /// when they are needed: by `prepare`, `configure`, `extend` or the first frame.
     explicit Renderer(const gl::GetProc& get_proc, const RendererOptions& options = {});
     Renderer(Renderer&& other) noexcept;
     Renderer& operator=(Renderer&& other) noexcept;
@@ -44,8 +49,31 @@ class CANDELA_API Renderer {
 
     /// Switches to `configuration` from the next frame on. Returns the errors, one per string; if there are
     /// any, the current configuration stays. Scene data, VPLs and shadow maps are kept where their settings
-    /// do not change.
+    /// do not change. Compiles the shaders that frames like the last one need, and that have not been
+    /// compiled yet; before the first frame, those of frames like the one that was prepared last, or else of
+    /// a world of opaque surfaces.
     [[nodiscard]] std::vector<std::string> configure(const Configuration& configuration);
+    /// Compiles the shaders that frames of `world` in `views` need with `configuration`, so that these frames
+    /// need not wait for it. Nothing else changes: not the current configuration, the frame graph or any
+    /// result; nothing is drawn or uploaded. The frames need others if the world later shows what it has not
+    /// now, for example a first light source of another kind, blended surface or sky. Drivers may leave a
+    /// part of the work to the first frame, whatever has been compiled.
+    ///
+    /// Takes views as `render` does, also such of which the targets and the textures do not exist yet: only
+    /// sizes and what is asked for count. Of extensions, only what they need counts; their passes are not
+    /// declared. Runs in the calling thread until all is compiled. The driver may use others, and is then
+    /// given all shaders at once.
+    ///
+    /// `progress`, if any, is called in this thread: before anything is compiled, with those in `done` that
+    /// were ready before, and whenever another one is. It must not call the renderer. If it returns false,
+    /// compilation stops: what is ready stays, and a further call, or the first frame, goes on.
+    ///
+    /// Returns the errors as `configure` does, with file and line of a shader that does not compile. Throws
+    /// gl::GlError if another context is current or if there are no views, SceneError where `render` does
+    /// because of RendererOptions::checked, and what `progress` throws.
+    [[nodiscard]] std::vector<std::string> prepare(const Configuration& configuration, const World& world,
+                                                   std::span<const RenderView> views,
+                                                   const CompileProgress& progress = {});
     [[nodiscard]] const Configuration& configuration() const;
 
     /// Renders one frame: `world` in each of `views`, of which there must be at least one. VPLs, shadow maps

@@ -10,7 +10,7 @@ void draw_difference(Gpu& gpu, const ComparedPictures& pictures, float factor, c
     gpu.nearest().bind(UNIT_FIRST_PICTURE);
     gpu.nearest().bind(UNIT_SECOND_PICTURE);
     gpu.set_target(target);
-    gpu.draw_fullscreen(gpu.program({"output/fullscreen.vert", "inspect/difference.frag"}),
+    gpu.draw_fullscreen(gpu.programs().compiled({"output/fullscreen.vert", "inspect/difference.frag"}, {}),
                         {{"target_origin", glm::vec2(target.origin)}, {"factor", factor}});
 }
 

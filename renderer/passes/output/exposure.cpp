@@ -10,7 +10,7 @@ BufferHandle<glm::vec2> add_exposure(FrameGraph& graph, Gpu& gpu, TextureHandle 
     return graph.add("exposure", [&](Pass& pass) {
         pass.tag(Workload::pixels);
         pass.read(radiance, {Usage::sampled, UNIT_RADIANCE});
-        const gl::Program& program = exposure_program(gpu);
+        const gl::Program& program = gpu.program({exposure_stage});
         // Kept while the radiance does not change.
         const auto exposure =
             pass.write(graph.buffer<glm::vec2>("exposure", exposure_values, Lifetime::persistent),
@@ -24,10 +24,6 @@ void find_exposure(Gpu& gpu, const gl::Program& program) {
     ComputeSteps steps(gpu);
     steps.run(program, {EXPOSURE_GROUPS}, {{"finish", false}});
     steps.run(program, {}, {{"finish", true}});
-}
-
-const gl::Program& exposure_program(Gpu& gpu) {
-    return gpu.program({"output/exposure.comp"});
 }
 
 }  // namespace candela

@@ -19,6 +19,6 @@ inline constexpr std::uint64_t exposure_values = 1 + EXPOSURE_GROUPS;
 /// Does the work of the node, also for pictures from elsewhere: for the texture at UNIT_RADIANCE, to the
 /// buffer at BINDING_EXPOSURE.
 void find_exposure(Gpu& gpu, const gl::Program& program);
-[[nodiscard]] const gl::Program& exposure_program(Gpu& gpu);
+inline constexpr const char* exposure_stage = "output/exposure.comp";  ///< of the program
 
 }  // namespace candela

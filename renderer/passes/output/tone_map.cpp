@@ -27,10 +27,14 @@ void draw(Gpu& gpu, const gl::Program& program, const Target& target, const Disp
                                   {"opaque", display.opaque}});
 }
 
-const gl::Program& program_for(Gpu& gpu, const Display& display) {
+std::vector<std::string> stages_of_tone_map() {
+    return {"output/fullscreen.vert", "output/tone_map.frag"};
+}
+
+std::vector<std::string> variant_of(const Display& display) {
     std::vector<std::string> defined;
     if (display.automatic) defined.emplace_back("AUTOMATIC");
-    return gpu.program({"output/fullscreen.vert", "output/tone_map.frag"}, defined);
+    return defined;
 }
 
 }  // namespace
@@ -55,7 +59,7 @@ void add_tone_map(FrameGraph& graph, Gpu& gpu, TextureHandle radiance, ValueHand
         if (exposure) pass.read(*exposure, {Usage::storage, BINDING_EXPOSURE});
         pass.read(target);
         pass.parameter(display);
-        const gl::Program& program = program_for(gpu, display);
+        const gl::Program& program = gpu.program(stages_of_tone_map(), variant_of(display));
         (void)pass.write(picture, Usage::layer_target);
         pass.run([=, &gpu, &program](Execution& run) { draw(gpu, program, run.value(target), display); });
     });
@@ -66,10 +70,10 @@ void tone_map(Gpu& gpu, const Target& target, const Display& display) {
     if (display.automatic) {
         exposure = gl::Buffer(gpu.device(), "exposure", exposure_values * sizeof(glm::vec2));
         exposure.bind_base(GL_SHADER_STORAGE_BUFFER, BINDING_EXPOSURE);
-        find_exposure(gpu, exposure_program(gpu));
+        find_exposure(gpu, gpu.programs().compiled({exposure_stage}, {}));
         gpu.gl().MemoryBarrier(GL_SHADER_STORAGE_BARRIER_BIT);
     }
-    draw(gpu, program_for(gpu, display), target, display);
+    draw(gpu, gpu.programs().compiled(stages_of_tone_map(), variant_of(display)), target, display);
 }
 
 }  // namespace candela
