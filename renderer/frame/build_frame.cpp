@@ -16,7 +16,8 @@ namespace {
 
 LitScene add_scene(FrameGraph& graph, Gpu& gpu, const Configuration& configuration,
                    const FrameContents& contents, FrameHandles& frame) {
-    const SceneData scene = add_scene_upload(graph, gpu, contents.second_uvs);
+    SceneData scene = add_scene_upload(graph, gpu, contents.second_uvs);
+    scene.kinds = contents.surfaces;
     const Tracing tracing = add_bvh(graph, gpu, scene);
     frame.metrics = tracing.metrics;
     std::optional<Sky> sky;
@@ -85,12 +86,17 @@ struct WantedVpls {
     [[nodiscard]] bool any() const { return shown.emitted || shown.reflected; }
 };
 
-WantedVpls wanted_vpls(const Configuration& configuration, const FrameContents& contents) {
+WantedVpls wanted_vpls(const Configuration& configuration, const FrameShape& shape) {
+    const FrameContents& contents = shape.contents;
     const bool has_emission = contents.emitters || contents.sky;
+    // Where there is no surface, none reflects light; but the sky may light what the host draws.
+    const bool has_lit = contents.surfaces.any() || shape.receivers ||
+                         std::ranges::any_of(shape.views, &ViewShape::host_surfaces);
     WantedVpls wanted{.settings = configuration.vpls,
                       .bound = configuration.geometry_bound,
-                      .shown = {.emitted = has_emission && shows_direct(configuration.show),
-                                .reflected = configuration.indirect && shows_indirect(configuration.show)},
+                      .shown = {.emitted = has_emission && has_lit && shows_direct(configuration.show),
+                                .reflected = configuration.indirect && contents.surfaces.any() &&
+                                             shows_indirect(configuration.show)},
                       .emitters = contents.emitters};
     if (has_emission) wanted.settings.placement = VplPlacement::surfels;
     if (!configuration.indirect) wanted.settings.bounces = 0;
@@ -195,7 +201,7 @@ std::optional<SharedVpls> add_vpls(FrameGraph& graph, Gpu& gpu, const Configurat
                                    const FrameShape& shape, const LitScene& lit,
                                    std::optional<ValueHandle<Refinement>> refinement, FrameHandles& frame) {
     const FrameContents& contents = shape.contents;
-    const WantedVpls wanted = wanted_vpls(configuration, contents);
+    const WantedVpls wanted = wanted_vpls(configuration, shape);
     if (!wanted.any()) return std::nullopt;
     std::optional<SurfelInputs> inputs;
     if (wanted.settings.placement == VplPlacement::surfels) {
@@ -260,8 +266,12 @@ WorldContents contents_of(const World& world, SceneCheck& check, std::uint32_t v
         return check.accepts_at(world, entity, world_matrices(entity));
     };
     FrameContents& of_frame = contents.of_frame;
+    of_frame.surfaces = {};
     for (const auto& [entity, instance] : world.view<MeshInstance>()) {
         if (!check.accepts(world, entity, instance)) continue;
+        for (const Primitive& primitive : instance.mesh->primitives) {
+            of_frame.surfaces.add(drawn_alpha(*primitive.material));
+        }
         const bool emitter = !of_frame.emitters && emits(*instance.mesh);
         const bool glossy = !of_frame.glossy && is_glossy(*instance.mesh);
         const bool bumpy = !of_frame.bumpy && is_bumpy(*instance.mesh);

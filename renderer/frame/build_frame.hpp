@@ -71,13 +71,14 @@ struct ViewShape {
 
 /// What a world contains, as far as the passes of its frames depend on it.
 struct FrameContents {
-    bool emitters = false;      ///< surfaces that emit light
-    bool glossy = false;        ///< surfaces that may be glossy: is_glossy
-    bool bumpy = false;         ///< surfaces with normal or occlusion textures: is_bumpy
-    bool second_uvs = false;    ///< surfaces that need them: uses_second_uvs
-    bool glass = false;         ///< surfaces that light passes through: is_glass
-    bool sky = false;           ///< an Environment that is not black
-    bool shares_items = false;  ///< there are so many objects that a surfel stands for several
+    SurfaceKinds surfaces{.opaque = true};  ///< as long as no world is known, opaque ones are expected
+    bool emitters = false;                  ///< surfaces that emit light
+    bool glossy = false;                    ///< surfaces that may be glossy: is_glossy
+    bool bumpy = false;                     ///< surfaces with normal or occlusion textures: is_bumpy
+    bool second_uvs = false;                ///< surfaces that need them: uses_second_uvs
+    bool glass = false;                     ///< surfaces that light passes through: is_glass
+    bool sky = false;                       ///< an Environment that is not black
+    bool shares_items = false;              ///< there are so many objects that a surfel stands for several
     bool operator==(const FrameContents&) const = default;
 };
 
@@ -99,8 +100,8 @@ struct FrameShape {
 
 /// Declares all passes of a frame with a valid configuration. VPLs and all that is independent of the camera
 /// are shared by the views; the names of the passes and resources of view 2, 3, ... end in that number. `gpu`
-/// must outlive the graph. Throws gl::ProgramError if a shader does not
-/// compile, and passes on what an extension throws.
+/// must outlive the graph; its programs are to be compiled before the graph runs. Throws gl::ProgramError if
+/// a shader file is missing, and passes on what an extension throws.
 [[nodiscard]] FrameHandles build_frame(FrameGraph& graph, Gpu& gpu, const Configuration& configuration,
                                        const FrameShape& shape, std::span<const Extension> extensions);
 

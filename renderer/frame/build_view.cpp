@@ -69,11 +69,18 @@ MaterialParts shaded_parts(const SharedFrame& shared, const ViewHandles& view) {
             .bumpy = shared.contents.bumpy && !view.host && shows_bumps};
 }
 
+/// That of the shading path. Where there are no surfaces, nothing is found before shading, which then clears
+/// the picture.
+SurfaceStage surface_stage(const SharedFrame& shared) {
+    return shared.contents.surfaces.any() ? info_of(shared.configuration.path).surfaces
+                                          : SurfaceStage::forward;
+}
+
 /// The surfaces as far as they are found before they are shaded. `asked`: parts that passes other than that
 /// which shades need.
 Surfaces find_surfaces(FrameGraph& graph, Gpu& gpu, const SharedFrame& shared, const SceneData& seen,
                        const ViewData& view, const ViewHandles& out, const FrameParts& asked) {
-    const SurfaceStage stage = info_of(shared.configuration.path).surfaces;
+    const SurfaceStage stage = surface_stage(shared);
     if (stage == SurfaceStage::gbuffer || asked.albedo) {
         return add_gbuffer(graph, gpu, seen, view, shaded_parts(shared, out));
     }
@@ -262,7 +269,7 @@ void shade(FrameGraph& graph, Gpu& gpu, const SharedFrame& shared, const SceneDa
         lighting.indirect = {*parts.indirect, parts.indirect_flow};
         lighting.vpls.reset();
     }
-    if (out.host || info_of(shared.configuration.path).surfaces == SurfaceStage::gbuffer) {
+    if (out.host || surface_stage(shared) == SurfaceStage::gbuffer) {
         parts.radiance = add_deferred(graph, gpu, surfaces_of(parts), lighting, view);
         return;
     }
@@ -338,7 +345,6 @@ Lighting lighting_of_points(const Configuration& configuration, const LitScene& 
 void build_view(FrameGraph& graph, Gpu& gpu, const SharedFrame& shared, const ViewShape& shape,
                 std::size_t index, ViewHandles& out) {
     const Configuration& configuration = shared.configuration;
-    const ShadingPathInfo& path = info_of(configuration.path);
     const ViewData view =
         add_view_upload(graph, gpu, out.camera, rendered_size(shape.target, shared.quality));
     const SceneData seen = add_view_cull(graph, gpu, shared.lit.scene, shared.lit.tracing, out.camera);
@@ -361,9 +367,11 @@ void build_view(FrameGraph& graph, Gpu& gpu, const SharedFrame& shared, const Vi
     ViewFrame parts = first_parts(gpu, shared, index, view, found);
     extend(graph, shared, ExtensionPlace::after_surfaces, parts, out);
 
-    const bool bounds_lists = out.host || path.surfaces != SurfaceStage::forward;
-    out.lists =
-        add_lists(graph, gpu, configuration, shared.lit, view, bounds_lists ? parts.depth : std::nullopt);
+    if (out.host || shared.contents.surfaces.any()) {
+        const bool bounds_lists = out.host || info_of(configuration.path).surfaces != SurfaceStage::forward;
+        out.lists =
+            add_lists(graph, gpu, configuration, shared.lit, view, bounds_lists ? parts.depth : std::nullopt);
+    }
     if (out.lists) {
         parts.list_first = out.lists->first;
         parts.list_count = out.lists->count;

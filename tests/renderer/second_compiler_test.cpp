@@ -5,6 +5,7 @@
 #include <sys/wait.h>
 
 #include <algorithm>
+#include <array>
 #include <cstdlib>
 #include <fstream>
 #include <map>
@@ -86,6 +87,15 @@ bool has_variant(const std::vector<std::string>& macros) {
     });
 }
 
+/// A square without any texture.
+MeshInstance plain_square(AlphaMode mode) {
+    Material material;
+    material.alpha_mode = mode;
+    return {square(1.0F, std::make_shared<const Material>(material))};
+}
+
+constexpr std::array all_modes{AlphaMode::opaque, AlphaMode::mask, AlphaMode::blend};
+
 /// A square with a normal texture.
 MeshInstance bumpy_square(AlphaMode mode) {
     Material material;
@@ -159,6 +169,12 @@ TEST_CASE_FIXTURE(GlFixture, "glslang compiles every variant of every program") 
             }
         }
     };
+    // The renderer builds what the last world needs: here surfaces of all kinds.
+    World world;
+    const Entity camera = add(world, at({0.0F, 1.0F, 0.0F}), Camera{});
+    for (const AlphaMode mode : all_modes) add(world, Transform{}, plain_square(mode));
+    const RenderTarget target(device, {1, 1});
+    renderer.render(world, camera, target.target());
     configure_each(VplPlacement::surfels, Show::total);
     configure_each(VplPlacement::paths, Show::total);
     configuration.tone_map.automatic_exposure = true;
@@ -166,20 +182,15 @@ TEST_CASE_FIXTURE(GlFixture, "glslang compiles every variant of every program") 
     for (const Show show : {Show::indirect, Show::irradiance, Show::albedo, Show::normals}) {
         configure_each(VplPlacement::surfels, show);
     }
-    // The renderer builds what the last world needs: here a sun, a sky and a surface that emits light.
-    World world;
+    // And a sun, a sky and a surface that emits light.
     add(world, Transform{}, DirectionalLight{});
     add(world, Environment{.radiance = glm::vec3(1.0F), .picture = nullptr});
     add(world, Transform{}, MeshInstance{square(1.0F, emitter(glm::vec3(1.0F)))});
-    const Entity camera = add(world, at({0.0F, 1.0F, 0.0F}), Camera{});
-    const RenderTarget target(device, {1, 1});
     renderer.set_receivers({{.position = {}, .normal = {0.0F, 1.0F, 0.0F}}});
     renderer.render(world, camera, target.target());
     configure_each(VplPlacement::surfels, Show::total);
     // Surfaces with normal textures, without glossy ones.
-    for (const AlphaMode mode : {AlphaMode::opaque, AlphaMode::mask, AlphaMode::blend}) {
-        add(world, Transform{}, bumpy_square(mode));
-    }
+    for (const AlphaMode mode : all_modes) add(world, Transform{}, bumpy_square(mode));
     renderer.render(world, camera, target.target());
     configure_each(VplPlacement::surfels, Show::total);
     configure_each(VplPlacement::surfels, Show::normals);

@@ -178,9 +178,13 @@ struct ShadowNode {
     SceneData scene;
     ShadowMaps out;
     ShadowSettings settings;
-    const gl::Program& program;
+    const gl::Program* program;  // null if nothing casts shadows
     ValueHandle<SceneMetrics> metrics;
 };
+
+const gl::Program& shadow_program(Gpu& gpu) {
+    return gpu.program({"lights/shadow_maps.vert", "lights/shadow_maps.geom", "lights/shadow_maps.frag"});
+}
 
 /// The draws of a view: `count` from number `first` on.
 struct DrawRange {
@@ -222,11 +226,12 @@ void draw_views(Gpu& gpu, Execution& run, const ShadowNode& node, const std::vec
         const std::uint32_t resolution = resolution_of(view, node.settings);
         target.set_layer(run.object(view.cube ? out.cubes : out.maps), view.layer, resolution);
         target.clear();
-        node.program.use({{"clip_from_world", view.clip_from_world},
-                          {"depth_scale", view.depth_scale},
-                          {"light_position", view.light_position},
-                          {"least_w", view.depth_scale > 0.0F ? least_distance : 0.5F},
-                          {"texel", 2.0F / static_cast<float>(resolution)}});
+        if (draws[i].count == 0) continue;
+        node.program->use({{"clip_from_world", view.clip_from_world},
+                           {"depth_scale", view.depth_scale},
+                           {"light_position", view.light_position},
+                           {"least_w", view.depth_scale > 0.0F ? least_distance : 0.5F},
+                           {"texel", 2.0F / static_cast<float>(resolution)}});
         draw_commands(gpu, draws[i].first, draws[i].count, {.depth_test = gl::DepthTest::nearer});
     }
 }
@@ -308,8 +313,7 @@ ShadowMaps add_shadow_maps(FrameGraph& graph, Gpu& gpu, const SceneData& scene,
         pass.read(planned.plan);
         pass.parameter(settings);
         pass.read(metrics);
-        const gl::Program& program =
-            gpu.program({"lights/shadow_maps.vert", "lights/shadow_maps.geom", "lights/shadow_maps.frag"});
+        const gl::Program* const program = scene.kinds.any() ? &shadow_program(gpu) : nullptr;
         const ShadowMaps out{
             .plan = planned.plan,
             .shadows = planned.shadows,
@@ -325,7 +329,7 @@ ShadowMaps add_shadow_maps(FrameGraph& graph, Gpu& gpu, const SceneData& scene,
                            return depth_terms(drawn, cubes, layer);
                        }));
         }
-        pass.run([=, &gpu, &program](Execution& run) {
+        pass.run([=, &gpu](Execution& run) {
             const auto due = due_views(run, run.changed(surfaces), out, settings);
             draw_views(gpu, run, {scene, out, settings, program, metrics}, due);
         });

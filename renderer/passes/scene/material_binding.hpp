@@ -38,6 +38,21 @@ struct MaterialTexture {
     return is_seen_through(material) ? AlphaMode::blend : material.alpha_mode;
 }
 
+/// Which kinds of surfaces there may be, by drawn_alpha.
+struct SurfaceKinds {
+    bool opaque = false;
+    bool masked = false;
+    bool blended = false;
+
+    void add(AlphaMode alpha) {
+        opaque |= alpha == AlphaMode::opaque;
+        masked |= alpha == AlphaMode::mask;
+        blended |= alpha == AlphaMode::blend;
+    }
+    [[nodiscard]] bool any() const { return opaque || masked || blended; }
+    bool operator==(const SurfaceKinds&) const = default;
+};
+
 /// What draws with a material need besides its record in the buffer of materials, which has its factors.
 /// Materials that differ in nothing but factors have equal bindings, and one call draws all their meshes.
 struct MaterialBinding {

@@ -94,6 +94,8 @@ struct SceneData {
     BufferHandle<gpu::Instance> instances;  ///< by drawable: world matrix and material
     /// By vertex, of those that have them; none where no surface needs them.
     std::optional<BufferHandle<glm::vec2>> second_uvs{};
+    /// Passes that draw need no programs for other surfaces.
+    SurfaceKinds kinds{.opaque = true, .masked = true, .blended = true};
 };
 
 /// Adds nodes `scene-gather` (CPU: SceneList, from MeshInstance, Transform and DeformedMesh), `scene-upload`

@@ -74,17 +74,19 @@ TextureHandle add_transparent(FrameGraph& graph, Gpu& gpu, const SceneData& scen
         variant.emplace_back("BLENDED");
         if (parts.emission) variant.emplace_back("EMISSION");
         if (parts.glass) variant.emplace_back("GLASS");
-        const gl::Program& program =
-            gpu.program({"surfaces/mesh_surface.vert", "shading/forward.frag"}, variant);
+        const gl::Program* const program =
+            scene.kinds.blended
+                ? &gpu.program({"surfaces/mesh_surface.vert", "shading/forward.frag"}, variant)
+                : nullptr;
         const TextureHandle out = pass.write(radiance, Usage::colour_target);
-        pass.run([=, &gpu, &program](Execution& run) {
+        pass.run([=, &gpu](Execution& run) {
             const std::vector<SortedGroup> sorted =
                 back_to_front(run.value(scene.layout), run.value(scene.placement), run.value(view.camera));
             if (sorted.empty()) return;
             check_lights(run.value(lighting.lights.table).entries.size());
             bind_lighting(gpu, lighting);
             bind_meshes(gpu, run, scene);
-            program.use(loop_parts(most_lights, most_lights).front());
+            program->use(loop_parts(most_lights, most_lights).front());
             for (const SortedGroup& next : sorted) {
                 draw_blended(gpu, *next.group);
             }

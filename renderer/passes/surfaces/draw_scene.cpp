@@ -61,9 +61,11 @@ SurfacePrograms surface_programs(Gpu& gpu, const SceneData& scene, const std::st
                                  std::vector<std::string> defined) {
     defined = mesh_variant(scene, std::move(defined));
     const std::vector<std::string> stages{"surfaces/mesh_surface.vert", fragment_stage};
-    const gl::Program& opaque = gpu.program(stages, defined);
+    SurfacePrograms programs{.opaque = nullptr, .masked = nullptr};
+    if (scene.kinds.opaque) programs.opaque = &gpu.program(stages, defined);
     defined.emplace_back("MASKED");
-    return {&opaque, &gpu.program(stages, defined)};
+    if (scene.kinds.masked) programs.masked = &gpu.program(stages, defined);
+    return programs;
 }
 
 void draw_surfaces(Gpu& gpu, Execution& run, const SceneData& scene, const SurfacePrograms& programs,

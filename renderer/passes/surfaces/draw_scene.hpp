@@ -33,8 +33,8 @@ inline constexpr gl::RasterState visible_surfaces{.depth_test = gl::DepthTest::e
 inline constexpr gl::RasterState visible_surfaces_again{
     .depth_test = gl::DepthTest::equal, .writes_depth = false, .blending = gl::Blending::add};
 
-/// A program for opaque surfaces, and its variant for masked surfaces, which discards fragments in holes.
-/// Owned by the Gpu.
+/// A program for opaque surfaces, and its variant for masked surfaces, which discards fragments in holes;
+/// null if the scene has none. Owned by the Gpu.
 struct SurfacePrograms {
     const gl::Program* opaque;
     const gl::Program* masked;
