@@ -69,11 +69,15 @@ void main() {
     uint row = listed_rows > 0u ? listed[gl_GlobalInvocationID.x] : gl_GlobalInvocationID.x;
     uint pair = listed_pairs > 0u ? listed[first_pair + gl_WorkGroupID.y] : gl_WorkGroupID.y;
     if (2u * pair >= columns) return;
-    bvec2 stay = bvec2(pair_stays(row, 2u * pair), pair_stays(row, 2u * pair + 1u));
-    if (all(stay)) return;
     uint place = form_factors_at(row, pair);
     vec2 factors = unpackHalf2x16(form_factors[place]);
-    if (!stay.x) factors.x = visible_form_factor(row, 2u * pair);
-    if (!stay.y) factors.y = visible_form_factor(row, 2u * pair + 1u);
-    form_factors[place] = packHalf2x16(factors);
+    bool all_stay = true;
+    // A loop has the code for rays, which takes drivers long to compile, only once.
+    for (uint i = 0u; i < 2u; ++i) {
+        uint column = 2u * pair + i;
+        if (pair_stays(row, column)) continue;
+        factors[i] = visible_form_factor(row, column);
+        all_stay = false;
+    }
+    if (!all_stay) form_factors[place] = packHalf2x16(factors);
 }

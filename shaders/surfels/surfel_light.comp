@@ -1,6 +1,6 @@
 // Flux at the points of the surfels' cells: of the lights, with a shadow ray to each, or several; of surfaces that emit
-// light; of the sky (SKY); and the flux that the points emit themselves, π times radiance times area. One invocation per
-// cell point.
+// light (EMITTERS); of the sky (SKY); and the flux that the points emit themselves, π times radiance times area. One
+// invocation per cell point.
 #include "bindings.glsl"
 #include "scene/bvh.glsl"
 #include "lights/lights.glsl"
@@ -34,25 +34,10 @@ const uint MOST_NEAR_EMITTERS = 256u;
 const uint SUN_RAYS = 8u;
 const uint FEW_LIGHTS = 16u;
 
-bool is_hidden(Light light, vec3 origin, vec3 direction) {
-    return any_hit(origin, direction, 0.0, distance_to(light, origin) - ray_offset);
-}
-
 // Where a cell point receives the light of a source `height` above its plane: sunk behind its surface, so that the source
 // is at least as high as the point's part of the surface is wide. See theory.md, "Lights close to a surface".
 vec3 sunk_position(CellPoint point, float height) {
     return point.position - max(sqrt(point.area) - height, 0.0) * point.normal;
-}
-
-vec3 irradiance_from_place(Light light, CellPoint point) {
-    vec3 to_light = light.position - point.position;
-    float height = dot(point.normal, to_light);
-    // A light on the surface lights it like one just in front of it.
-    if (height < -ray_offset) return vec3(0.0);
-    Incident incident = incident_light(light, sunk_position(point, max(height, 0.0)));
-    if (incident.irradiance == vec3(0.0)) return vec3(0.0);
-    if (is_hidden(light, point.position + ray_offset * point.normal, normalize(to_light))) return vec3(0.0);
-    return max(dot(point.normal, incident.direction), 0.0) * incident.irradiance;
 }
 
 // A place in a point's part of its cell: the point itself, or somewhere on the way to another point of the cell, which is
@@ -68,43 +53,31 @@ vec3 place_in_part(CellPoint point, uint id, uint i) {
     return point.position + min(sqrt(u * point.area / (PI * distance2)), 0.5) * apart;
 }
 
-// The share of a point's part that a directional light reaches.
+// The share of a point's part that a light reaches. `direction`: to the light. One loop for all kinds of lights has the
+// code for rays, which takes drivers long to compile, only once.
 float lit_share(Light light, CellPoint point, uint id, vec3 direction) {
-    uint rays = light_count > FEW_LIGHTS ? 1u : SUN_RAYS;
+    bool directional = light.kind == LIGHT_DIRECTIONAL;
+    uint rays = directional && light_count <= FEW_LIGHTS ? SUN_RAYS : 1u;
     uint hidden = 0u;
     for (uint i = 0u; i < rays; ++i) {
-        vec3 origin = place_in_part(point, id, i) + ray_offset * point.normal;
-        if (is_hidden(light, origin, direction)) ++hidden;
+        vec3 origin = (directional ? place_in_part(point, id, i) : point.position) + ray_offset * point.normal;
+        if (any_hit(origin, direction, 0.0, distance_to(light, origin) - ray_offset)) ++hidden;
     }
     return 1.0 - float(hidden) / float(rays);
 }
 
+// Of a light at a place or a directional one.
 vec3 irradiance_from(Light light, CellPoint point, uint id) {
-    if (light.kind != LIGHT_DIRECTIONAL) return irradiance_from_place(light, point);
-    Incident incident = incident_light(light, point.position);
+    bool directional = light.kind == LIGHT_DIRECTIONAL;
+    vec3 to_light = light.position - point.position;
+    float height = dot(point.normal, to_light);
+    // A light on the surface lights it like one just in front of it.
+    if (!directional && height < -ray_offset) return vec3(0.0);
+    Incident incident = incident_light(light, directional ? point.position : sunk_position(point, max(height, 0.0)));
     float cos_surface = dot(point.normal, incident.direction);
     if (cos_surface <= 0.0 || incident.irradiance == vec3(0.0)) return vec3(0.0);
-    return cos_surface * lit_share(light, point, id, incident.direction) * incident.irradiance;
-}
-
-// Irradiance from the cell of a surfel that emits light, unoccluded.
-vec3 irradiance_from_cell(Surfel emitter, CellPoint point) {
-    vec3 sum = vec3(0.0);
-    for (uint i = emitter.first_point; i < emitter.first_point + emitter.point_count; ++i) {
-        CellPoint from = cell_points[i];
-        float term = disc_term(from.position, from.normal, from.area / PI, point.position, point.normal);
-        if (term > 0.0) sum += from.area * term * emission_at(materials[from.material], from.uv);
-    }
-    return sum;
-}
-
-// Irradiance from the cell of a surfel that emits light.
-vec3 visible_from_cell(Surfel emitter, CellPoint point) {
-    vec3 irradiance = irradiance_from_cell(emitter, point);
-    if (irradiance == vec3(0.0)) return irradiance;
-    vec3 origin = point.position + ray_offset * point.normal;
-    vec3 target = emitter.position + ray_offset * emitter.normal;
-    return any_hit(origin, target - origin, 0.0, 1.0) ? vec3(0.0) : irradiance;
+    vec3 to_place = directional ? incident.direction : normalize(to_light);
+    return cos_surface * lit_share(light, point, id, to_place) * incident.irradiance;
 }
 
 // The part of many sources that a cell point receives: every `shares`-th, from `first` on, each with a weight. The points
@@ -126,6 +99,28 @@ Share share_of(uint id, Surfel own, uint sources) {
     return Share(first, shares, covers_all ? float(own.point_count) / same : float(shares));
 }
 
+#ifdef EMITTERS
+
+// Irradiance from the cell of a surfel that emits light, unoccluded.
+vec3 irradiance_from_cell(Surfel emitter, CellPoint point) {
+    vec3 sum = vec3(0.0);
+    for (uint i = emitter.first_point; i < emitter.first_point + emitter.point_count; ++i) {
+        CellPoint from = cell_points[i];
+        float term = disc_term(from.position, from.normal, from.area / PI, point.position, point.normal);
+        if (term > 0.0) sum += from.area * term * emission_at(materials[from.material], from.uv);
+    }
+    return sum;
+}
+
+// Irradiance from the cell of a surfel that emits light.
+vec3 visible_from_cell(Surfel emitter, CellPoint point) {
+    vec3 irradiance = irradiance_from_cell(emitter, point);
+    if (irradiance == vec3(0.0)) return irradiance;
+    vec3 origin = point.position + ray_offset * point.normal;
+    vec3 target = emitter.position + ray_offset * emitter.normal;
+    return any_hit(origin, target - origin, 0.0, 1.0) ? vec3(0.0) : irradiance;
+}
+
 // Irradiance from surfaces that emit light: the point's share of them, and all that are near its cell.
 vec3 irradiance_from_emitters(uint id, CellPoint point) {
     Surfel own = surfels[point.surfel];
@@ -139,6 +134,12 @@ vec3 irradiance_from_emitters(uint id, CellPoint point) {
     }
     return sum;
 }
+
+#else
+
+vec3 irradiance_from_emitters(uint id, CellPoint point) { return vec3(0.0); }
+
+#endif
 
 #ifdef SKY
 

@@ -100,7 +100,8 @@ DirectLight add_direct_light(FrameGraph& graph, Gpu& gpu, const Tracing& tracing
         pass.read(lights.table);
         pass.read(lights.buffer, {Usage::storage, BINDING_LIGHTS});
         read_tracing(pass, tracing);
-        const std::vector<std::string> defined = read_sky(pass, sources.sky);
+        std::vector<std::string> defined = read_sky(pass, sources.sky);
+        if (sources.emitters) defined.emplace_back("EMITTERS");
         const gl::Program& lighter = gpu.program({"surfels/surfel_light.comp"}, defined);
         const gl::Program& adder = gpu.program({"surfels/surfel_cells.comp"});
         const DirectLight out{
