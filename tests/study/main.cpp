@@ -186,6 +186,19 @@ void add_edits(CLI::App& app, int& status) {
     part.callback([=, &status] { status = edits(*study); });
 }
 
+void add_start(CLI::App& app, int& status) {
+    CLI::App& part = *app.add_subcommand("start", "time from a renderer's constructor to its first picture");
+    const auto study = std::make_shared<StartStudy>();
+    const auto size = std::make_shared<std::string>("200x150");
+    add_scene(part, study->scene);
+    part.add_option("--size", *size, "WxH, pixels");
+    part.add_option("--rounds", study->rounds)->check(CLI::Range(1, 1000));
+    part.callback([=, &status] {
+        study->size = size_named(*size);
+        status = start(*study);
+    });
+}
+
 void add_scale(CLI::App& app, int& status) {
     CLI::App& part =
         *app.add_subcommand("scale", "time and memory to load a scene and render its first frame");
@@ -238,6 +251,7 @@ int run(int count, char** arguments) {
     add_animate(app, status);
     add_moves(app, status);
     add_edits(app, status);
+    add_start(app, status);
     add_scale(app, status);
     add_figures(app, status);
     add_compare(app);

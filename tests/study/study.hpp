@@ -112,6 +112,17 @@ struct EditsStudy {
 /// Prints the CPU time and the uploaded bytes of frames in which meshes come, go or move.
 int edits(const EditsStudy& study);
 
+/// The input of `start`.
+struct StartStudy {
+    std::filesystem::path scene;
+    glm::uvec2 size{200, 150};
+    int rounds = 5;
+};
+/// Prints what it takes from the constructor of a renderer to its first picture, of an empty world and of a
+/// scene: without a program cache, with one that was filled before, and what of it `prepare` can do ahead.
+/// The driver's own cache is off, unless the environment variable MESA_SHADER_CACHE_DISABLE says otherwise.
+int start(const StartStudy& study);
+
 /// The input of `scale`.
 struct ScaleStudy {
     std::filesystem::path scene;
