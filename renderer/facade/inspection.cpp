@@ -1,3 +1,4 @@
+#include <candela/extension.hpp>
 #include <candela/inspection.hpp>
 
 #include <fmt/format.h>

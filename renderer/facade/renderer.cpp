@@ -1,3 +1,5 @@
+#include <candela/extension.hpp>
+#include <candela/graph/describe.hpp>
 #include <candela/renderer.hpp>
 
 #include <algorithm>

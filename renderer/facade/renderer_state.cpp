@@ -13,6 +13,7 @@
 #include <glm/geometric.hpp>
 
 #include <candela/error.hpp>
+#include <candela/extension.hpp>
 #include <candela/graph/compile.hpp>
 #include <candela/graph/describe.hpp>
 #include <candela/scene/scene_error.hpp>

@@ -9,6 +9,8 @@
 #include <vector>
 
 #include <candela/api.hpp>
+#include <candela/extension.hpp>
+#include <candela/graph/describe.hpp>
 #include <candela/graph/execute.hpp>
 #include <candela/renderer.hpp>
 #include "renderer/frame/build_frame.hpp"

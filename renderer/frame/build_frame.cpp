@@ -2,6 +2,7 @@
 
 #include <algorithm>
 
+#include <candela/extension.hpp>
 #include <candela/scene/hierarchy.hpp>
 #include "renderer/frame/build_view.hpp"
 #include "renderer/passes/indirect/vpl_gather.hpp"

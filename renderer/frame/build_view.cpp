@@ -9,6 +9,7 @@
 
 #include <fmt/format.h>
 
+#include <candela/extension.hpp>
 #include <candela/graph/errors.hpp>
 #include "renderer/frame/frame_budget.hpp"
 #include "renderer/passes/indirect/vpl_gather.hpp"

@@ -3,6 +3,8 @@
 #include <optional>
 #include <span>
 
+#include <candela/extension.hpp>
+
 #include "renderer/frame/build_frame.hpp"
 #include "renderer/passes/indirect/vpl_light.hpp"
 #include "renderer/passes/shading/lighting.hpp"

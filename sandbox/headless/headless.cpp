@@ -47,8 +47,8 @@ void apply(Renderer& renderer, const Configuration& configuration) {
 
 void run_headless(const HeadlessContext& context, Scene& scene, Entity camera,
                   const Configuration& configuration, const Options& options, glm::ivec2 size) {
-    Renderer renderer(context.get_proc(),
-                      {.shader_directory = options.shaders.value_or(fs::path()), .log = print_message});
+    Renderer renderer(context.get_proc(), {.shader_directory = options.shaders.value_or(fs::path()).string(),
+                                           .log = print_message});
     apply(renderer, configuration);
     tools::Capture capture(renderer, context.get_proc(), size);
     const std::optional<fs::path> out = picture_path(options);

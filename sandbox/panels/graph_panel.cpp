@@ -6,6 +6,8 @@
 
 #include <fmt/format.h>
 
+#include <candela/graph/describe.hpp>
+
 #include "sandbox/panels/controls.hpp"
 
 namespace candela::sandbox {

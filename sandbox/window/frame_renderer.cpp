@@ -6,6 +6,8 @@
 
 #include <glm/vec4.hpp>
 
+#include <candela/graph/describe.hpp>
+
 namespace candela::sandbox {
 
 namespace {

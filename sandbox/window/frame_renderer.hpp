@@ -9,6 +9,7 @@
 #include <vector>
 
 #include <candela/gl_loader.hpp>
+#include <candela/graph/describe.hpp>
 #include <candela/inspection.hpp>
 #include <candela/renderer.hpp>
 #include "sandbox/candela_private.hpp"

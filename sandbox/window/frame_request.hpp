@@ -10,6 +10,7 @@
 #include <glm/vec2.hpp>
 #include <glm/vec3.hpp>
 
+#include <candela/graph/describe.hpp>
 #include <candela/inspection.hpp>
 #include <candela/renderer.hpp>
 #include <candela/tools/picture.hpp>

@@ -4,6 +4,8 @@
 #include <optional>
 #include <string>
 
+#include <candela/graph/describe.hpp>
+
 #include "sandbox/panels/graph_panel.hpp"
 #include "sandbox/panels/pass_costs.hpp"
 #include "sandbox/panels/status_line.hpp"

@@ -6,6 +6,8 @@
 #include <string>
 #include <vector>
 
+#include <candela/graph/describe.hpp>
+
 #include "sandbox/command_line/choose_configuration.hpp"
 
 namespace candela::sandbox {

@@ -1,5 +1,6 @@
 #pragma once
 
+#include <candela/graph/describe.hpp>
 #include "sandbox/editing/interaction.hpp"
 #include "sandbox/panels/graph_panel.hpp"
 #include "sandbox/window/app_state.hpp"

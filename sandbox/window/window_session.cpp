@@ -40,7 +40,7 @@ WindowSession::WindowSession(Window& window, const OpenScene& open, const Chosen
     loader_.start(open, "the scene");
     thread_ = std::make_unique<RenderThread>(
         window.share(),
-        RendererOptions{.shader_directory = options.shaders.value_or(std::filesystem::path()),
+        RendererOptions{.shader_directory = options.shaders.value_or(std::filesystem::path()).string(),
                         .log = [this](std::string_view line) { warnings_.add(line); }},
         Window::wake);
 }

@@ -14,6 +14,7 @@
 
 #include <glm/vec2.hpp>
 
+#include <candela/graph/describe.hpp>
 #include <candela/renderer.hpp>
 #include "sandbox/candela_private.hpp"
 #include "sandbox/command_line/choose_configuration.hpp"

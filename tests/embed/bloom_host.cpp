@@ -4,6 +4,7 @@
 
 #include "host.hpp"
 
+#include <candela/extension.hpp>
 #include <candela/graph/execute.hpp>
 
 namespace {

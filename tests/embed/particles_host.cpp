@@ -4,6 +4,7 @@
 
 #include "particles.hpp"
 
+#include <candela/extension.hpp>
 #include <candela/graph/execute.hpp>
 #include <candela/scene/hierarchy.hpp>
 #include <numbers>

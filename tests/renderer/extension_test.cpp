@@ -13,6 +13,7 @@
 #include <utility>
 #include <vector>
 
+#include <candela/extension.hpp>
 #include <candela/graph/execute.hpp>
 #include <candela/scene/tangents.hpp>
 #include "renderer/facade/device_of.hpp"

@@ -13,6 +13,7 @@
 #include <string>
 #include <vector>
 
+#include <candela/extension.hpp>
 #include <candela/graph/execute.hpp>
 #include <candela/inspection.hpp>
 #include "renderer/facade/device_of.hpp"

@@ -7,6 +7,7 @@
 #include <string>
 #include <vector>
 
+#include <candela/extension.hpp>
 #include <candela/graph/execute.hpp>
 #include "renderer/gl/compiling_program.hpp"
 #include "renderer/gl/texture.hpp"

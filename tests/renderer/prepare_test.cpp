@@ -234,7 +234,7 @@ TEST_CASE("a faulty shader is the same error wherever it is needed, and can be c
     const auto context = make_current_context();
     const ShaderCopy shaders;
     constexpr const char* file = "shading/deferred.comp";
-    TestedRenderer renderer(context->get_proc(), {.shader_directory = shaders.path()});
+    TestedRenderer renderer(context->get_proc(), {.shader_directory = shaders.path().string()});
     const Scene scene = cornell_box();
     const RenderTarget target(device_of(renderer), size);
     const std::vector<RenderView> views{{.camera = scene.camera, .target = target.target()}};
@@ -256,7 +256,7 @@ TEST_CASE("a faulty shader is the same error wherever it is needed, and can be c
     CHECK(target.read() == before);
 
     {
-        TestedRenderer fresh(context->get_proc(), {.shader_directory = shaders.path()});
+        TestedRenderer fresh(context->get_proc(), {.shader_directory = shaders.path().string()});
         CHECK(throws<gl::ProgramError>([&] { fresh.render(scene.world, views); }, errors[0]));
         CHECK(fresh.configure(fresh.configuration()) == errors);
         shaders.restore(file);

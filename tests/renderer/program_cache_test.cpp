@@ -106,7 +106,7 @@ TEST_CASE_FIXTURE(CacheTests, "a second renderer loads what the first has compil
     Configuration configuration = linear_configuration();
     configuration.visibility.method = VplVisibility::maps;
     const auto picture = [&] {
-        TestedRenderer renderer(get_proc, {.program_cache = folder / "cache"});
+        TestedRenderer renderer(get_proc, {.program_cache = (folder / "cache").string()});
         const RenderTarget target(device_of(renderer), {24, 18});
         REQUIRE(renderer.configure(configuration).empty());
         renderer.render(scene.world, scene.camera, target.target());

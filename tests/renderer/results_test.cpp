@@ -9,6 +9,8 @@
 #include <string>
 #include <vector>
 
+#include <candela/extension.hpp>
+
 #include "renderer/facade/device_of.hpp"
 #include "renderer/gpu/gpu_types.hpp"
 #include "tests/renderer/path_fixture.hpp"

@@ -13,6 +13,8 @@
 #include <string>
 #include <vector>
 
+#include <candela/extension.hpp>
+#include <candela/graph/frame_graph.hpp>
 #include <candela/inspection.hpp>
 #include <candela/scene/tangents.hpp>
 #include "shaders/bindings.glsl"

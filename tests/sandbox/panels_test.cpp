@@ -6,6 +6,8 @@
 #include <functional>
 #include <tuple>
 
+#include <candela/graph/describe.hpp>
+
 #include "sandbox/command_line/choose_configuration.hpp"
 #include "sandbox/panels/controls.hpp"
 #include "sandbox/panels/graph_panel.hpp"

@@ -2,6 +2,8 @@
 
 #include <doctest/doctest.h>
 
+#include <candela/graph/describe.hpp>
+
 #include "sandbox/command_line/choose_configuration.hpp"
 
 namespace candela::sandbox {

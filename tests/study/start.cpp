@@ -68,7 +68,7 @@ StartTimes start_once(const StartedWorld& started, glm::uvec2 pixels, StartKind 
     StartTimes times;
     Stopwatch watch;
     Renderer renderer(Compilations::counting(context->get_proc()),
-                      {.program_cache = kind == StartKind::cached ? cache : fs::path()});
+                      {.program_cache = kind == StartKind::cached ? cache.string() : std::string()});
     times.constructor = watch.lap();
     const gl::Texture target(device_of(renderer), "target", {.size = pixels});
     gl::Framebuffer framebuffer(device_of(renderer), "target");

@@ -15,10 +15,9 @@
 #include <candela/api.hpp>
 #include <candela/configuration.hpp>
 #include <candela/ecs/world.hpp>
-#include <candela/extension.hpp>
 #include <candela/gl_error.hpp>
 #include <candela/gl_loader.hpp>
-#include <candela/graph/describe.hpp>
+#include <candela/graph/errors.hpp>
 #include <candela/receiver.hpp>
 #include <candela/renderer_options.hpp>
 #include <candela/report.hpp>
@@ -27,6 +26,8 @@
 namespace candela {
 
 class Gpu;
+struct Extension;         // <candela/extension.hpp>
+struct GraphDescription;  // <candela/graph/describe.hpp>
 
 /// Output of Renderer::describe: plain text, Graphviz DOT, or JSON.
 enum class GraphFormat : std::uint8_t { text, dot, json };

@@ -1,7 +1,7 @@
 #pragma once
 
-#include <filesystem>
 #include <functional>
+#include <string>
 #include <string_view>
 
 namespace candela {
@@ -9,7 +9,7 @@ namespace candela {
 /// Options of a Renderer for its whole life.
 struct RendererOptions {
     /// The shaders are read from this directory. Empty: those embedded in the library.
-    std::filesystem::path shader_directory{};
+    std::string shader_directory{};
     /// The compiled programs are kept in this directory, in the driver's own form, from which a later
     /// renderer has them faster. It is made if it is not there. Empty: nowhere. Each program is a file, named
     /// after a hash of its sources and of the driver's vendor, name and version. Other files, damaged ones
@@ -17,7 +17,7 @@ struct RendererOptions {
     /// a time, and the host may empty it at any time; nothing else does. If it cannot be written, `log` is
     /// told once. A driver need not give programs away: then the directory stays empty. The files are handed
     /// to the driver as they are, so that nobody else should be able to write them.
-    std::filesystem::path program_cache{};
+    std::string program_cache{};
     /// Turns on the debug output of the context, synchronously, as long as the renderer lives, and reports
     /// errors of the driver to `log`. A debug callback that the host has installed before still receives
     /// every message. Off: the debug state of the context is neither read nor changed.
