@@ -5,6 +5,7 @@
 #include <charconv>
 #include <cmath>
 #include <limits>
+#include <regex>
 #include <string_view>
 #include <system_error>
 #include <type_traits>
@@ -26,7 +27,6 @@ namespace {
 namespace fs = std::filesystem;
 
 constexpr int largest_side = 16384;  // maximum texture size of most drivers
-constexpr std::string_view frame_number = "%d";
 
 /// All errors have the same form: the flag, the value and what is wrong with it.
 [[noreturn]] void fail(std::string_view flag, std::string_view value, std::string_view error) {
@@ -289,9 +289,10 @@ void declare_files(CommandLine& line, Options& options) {
                        options.shaders = given;
                    });
     line.add_switch("--print-config", "print the whole configuration as JSON and exit", options.print_config);
-    add_output(line, "--out", options.out, {".png", ".exr", ".pfm"},
-               "picture: PNG tone-mapped, EXR and PFM linear radiance; %d numbers frames; default headless: "
-               "candela.png, unless a report or a graph is asked for");
+    add_output(
+        line, "--out", options.out, {".png", ".exr", ".pfm"},
+        "picture: PNG tone-mapped, EXR and PFM linear radiance; %d numbers frames, %05d with five digits; "
+        "default headless: candela.png, unless a report or a graph is asked for");
     add_output(line, "--report", options.report, {".json"}, "times, counts and the energy account");
     add_output(line, "--describe-graph", options.describe_graph, {".txt", ".dot", ".json"},
                "the compiled frame graph");
@@ -338,12 +339,18 @@ ImportOptions import_options(const Options& options) {
 }
 
 fs::path numbered(const fs::path& out, int frame) {
-    std::string name = out.filename().string();
-    const std::string number = fmt::format("{}", frame);
-    for (auto at = name.find(frame_number); at != std::string::npos; at = name.find(frame_number, at)) {
-        name.replace(at, frame_number.size(), number);
+    static const std::regex place("%(0([1-9][0-9]?))?d");
+    const std::string name = out.filename().string();
+    std::string result;
+    auto rest = name.cbegin();
+    for (std::sregex_iterator found(name.cbegin(), name.cend(), place), end; found != end; ++found) {
+        const std::ssub_match& digits = (*found)[2];
+        result.append(rest, (*found)[0].first);
+        result += fmt::format("{:0{}}", frame, digits.matched ? std::stoi(digits.str()) : 1);
+        rest = (*found)[0].second;
     }
-    return out.parent_path() / name;
+    result.append(rest, name.cend());
+    return out.parent_path() / result;
 }
 
 }  // namespace candela::sandbox

@@ -59,8 +59,9 @@ void apply_settings(const Options& options, Configuration& configuration);
 /// How scenes are imported.
 [[nodiscard]] ImportOptions import_options(const Options& options);
 
-/// The picture's file name for frame `frame`: every "%d" in the name is replaced by the number. Without "%d"
-/// all frames have the same name, and only the last one is written.
+/// The picture's file name for frame `frame`: every "%d" in the name is replaced by the number, and "%05d" by
+/// the number with at least five digits. Without them all frames have the same name, and only the last one is
+/// written.
 [[nodiscard]] std::filesystem::path numbered(const std::filesystem::path& out, int frame);
 
 }  // namespace candela::sandbox

@@ -280,6 +280,9 @@ TEST_CASE("the number of a frame replaces placeholders in the file name") {
     CHECK(numbered("a%d.png", 7) == "a7.png");
     CHECK(numbered("in/f%d-%d.exr", 12) == "in/f12-12.exr");
     CHECK(numbered("%d/100%.png", 3) == "%d/100%.png");
+    CHECK(numbered("%05d.png", 42) == "00042.png");
+    CHECK(numbered("f%02d of %d.png", 123) == "f123 of 123.png");
+    CHECK(numbered("%0d %00d %5d %05.png", 7) == "%0d %00d %5d %05.png");
 }
 }  // TEST_SUITE("options")
 
