@@ -9,6 +9,7 @@
 #include <fmt/format.h>
 
 #include <candela/scene/scene_error.hpp>
+#include "engine/import/file_names.hpp"
 #include "engine/import/gltf_schema.hpp"
 #include "engine/import/shortest.hpp"
 
@@ -31,7 +32,7 @@ std::string percent_encoded(const std::string& name) {
 }
 
 bool is_binary(const fs::path& path) {
-    std::string extension = path.extension().string();
+    std::string extension = utf8_of(path.extension());
     std::ranges::transform(extension, extension.begin(),
                            [](char c) { return c >= 'A' && c <= 'Z' ? static_cast<char>(c + 32) : c; });
     if (extension != ".gltf" && extension != ".glb") {
@@ -138,7 +139,7 @@ fs::path Draft::beside(std::string_view ending) const {
 Json Draft::add_picture(std::vector<std::byte> encoded, std::string_view ending) {
     if (binary_) return {{"bufferView", add_view(encoded)}};
     files_.push_back({beside(ending), std::move(encoded)});
-    return {{"uri", percent_encoded(files_.back().path.filename().string())}};
+    return {{"uri", percent_encoded(utf8_of(files_.back().path.filename()))}};
 }
 
 std::vector<OutputFile> Draft::finish() {
@@ -148,7 +149,7 @@ std::vector<OutputFile> Draft::finish() {
     if (!buffer_.empty()) document["buffers"] = Json::array({Json{{"byteLength", buffer_.size()}}});
     if (!buffer_.empty() && !binary_) {
         files_.push_back({beside(".bin"), buffer_});
-        document["buffers"][0]["uri"] = percent_encoded(files_.back().path.filename().string());
+        document["buffers"][0]["uri"] = percent_encoded(utf8_of(files_.back().path.filename()));
     }
     const std::string json = document.dump(binary_ ? -1 : 1);
     check_schema(Json::parse(json));  // what the import would refuse is not written

@@ -3,6 +3,7 @@
 #include <utility>
 #include <variant>
 
+#include "engine/import/file_names.hpp"
 #include "engine/import/gltf_animations.hpp"
 #include "engine/import/gltf_document.hpp"
 #include "engine/import/gltf_environment.hpp"
@@ -98,7 +99,7 @@ ImportReport import_document(gltf::Bytes bytes, const std::filesystem::path& bas
 }  // namespace
 
 ImportReport import_gltf(const std::filesystem::path& path, World& into, const ImportOptions& options) {
-    return gltf::naming_file(path.string(), [&] {
+    return gltf::naming_file(gltf::utf8_of(path), [&] {
         gltf::ImportBudget budget(options.limits);
         const std::vector<unsigned char> bytes = gltf::read_file(path, "the file", budget);
         return import_document(bytes, path.parent_path(), into, budget, options);

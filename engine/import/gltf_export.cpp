@@ -20,6 +20,7 @@
 #include "engine/import/export_meshes.hpp"
 #include "engine/import/export_motion.hpp"
 #include "engine/import/exr.hpp"
+#include "engine/import/file_names.hpp"
 #include "engine/import/gltf_constants.hpp"
 #include "engine/import/gltf_lights.hpp"
 #include "engine/import/naming.hpp"
@@ -302,7 +303,7 @@ class WorldWriter {
 std::vector<std::string> export_gltf(const World& world, const std::filesystem::path& path,
                                      std::span<const Entity> without) {
     std::vector<std::string> warnings;
-    const std::vector<OutputFile> files = gltf::naming_file(path.string(), [&] {
+    const std::vector<OutputFile> files = gltf::naming_file(gltf::utf8_of(path), [&] {
         Draft draft(path);
         WorldWriter writer(world, choose_nodes(world, without), draft);
         writer.write_nodes();

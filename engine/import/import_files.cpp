@@ -11,6 +11,7 @@
 #include <tiny_gltf.h>
 
 #include <candela/scene/scene_error.hpp>
+#include "engine/import/file_names.hpp"
 #include "engine/import/piece_error.hpp"
 #include "engine/readable.hpp"
 
@@ -85,13 +86,16 @@ fs::path ImportFiles::resolve(const std::string& path, std::string_view called) 
     if (path.find('\0') != std::string::npos) {
         throw SceneError(fmt::format("{} contains a NUL character", called));
     }
+    const auto outside = [&] {
+        return SceneError(fmt::format("{} is outside of the folder that files are read from", called));
+    };
+    const fs::path name = path_of(path);
+    if (name.has_root_name()) throw outside();  // Windows would call a server of this name
     std::error_code error;
-    fs::path found = fs::weakly_canonical(base_directory_ / path, error);
+    fs::path found = fs::weakly_canonical(base_directory_ / name, error);
     const fs::path root = fs::weakly_canonical(root_, error);
     if (error) throw SceneError(fmt::format("{} cannot be read", called));
-    if (!is_below(found, root)) {
-        throw SceneError(fmt::format("{} is outside of the folder that files are read from", called));
-    }
+    if (!is_below(found, root)) throw outside();
     return found;
 }
 

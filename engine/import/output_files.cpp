@@ -1,14 +1,13 @@
 #include "engine/import/output_files.hpp"
 
-#include <unistd.h>
-
 #include <cerrno>
-#include <cstdio>
-#include <memory>
+#include <fstream>
+#include <random>
 
 #include <fmt/format.h>
 
 #include <candela/scene/scene_error.hpp>
+#include "engine/import/file_names.hpp"
 
 namespace candela {
 
@@ -16,8 +15,10 @@ namespace {
 
 namespace fs = std::filesystem;
 
+/// Why the last function failed. Streams need not say why.
 std::error_code last_error() {
-    return {errno, std::generic_category()};
+    return errno != 0 ? std::error_code(errno, std::generic_category())
+                      : std::make_error_code(std::errc::io_error);
 }
 
 /// Removes the new files that have not been renamed.
@@ -35,16 +36,19 @@ class FreshFiles {
 
     const fs::path& add(const fs::path& target) {
         paths_.push_back(target);
-        return paths_.back() += fmt::format(".{}.part", ::getpid());
+        return paths_.back() += fmt::format(".{:08x}.part", number_);
     }
     [[nodiscard]] const fs::path& operator[](std::size_t i) const { return paths_[i]; }
 
  private:
     std::vector<fs::path> paths_;
+    unsigned int number_ = std::random_device{}();  // others may save the same files at the same time
 };
 
 void check(const std::error_code& error, const fs::path& path) {
-    if (error) throw SceneError(fmt::format("{}: cannot be written: {}", path.string(), error.message()));
+    if (error) {
+        throw SceneError(fmt::format("{}: cannot be written: {}", gltf::utf8_of(path), error.message()));
+    }
 }
 
 /// An error if a file cannot take the place of what is at the path.
@@ -56,19 +60,19 @@ std::error_code error_of_place(const fs::path& path) {
 
 }  // namespace
 
-std::error_code write_bytes(const fs::path& path, const char* mode, std::span<const std::byte> bytes) {
-    std::unique_ptr<std::FILE, int (*)(std::FILE*)> file(std::fopen(path.c_str(), mode), &std::fclose);
-    if (!file) return last_error();
-    if (std::fwrite(bytes.data(), 1, bytes.size(), file.get()) != bytes.size()) return last_error();
-    // Buffered bytes are written on close, so only fclose reports that the disk is full.
-    return std::fclose(file.release()) == 0 ? std::error_code{} : last_error();
+std::error_code write_bytes(const fs::path& path, std::span<const std::byte> bytes) {
+    errno = 0;
+    std::ofstream file(path, std::ios::binary);
+    file.write(reinterpret_cast<const char*>(bytes.data()), static_cast<std::streamsize>(bytes.size()));
+    file.close();  // writes buffered bytes: only now a full disk is sure to be noticed
+    return file ? std::error_code{} : last_error();
 }
 
 void write_files(std::span<const OutputFile> files) {
     FreshFiles fresh;
     for (const OutputFile& file : files) {
         check(error_of_place(file.path), file.path);
-        check(write_bytes(fresh.add(file.path), "wb", file.bytes), file.path);
+        check(write_bytes(fresh.add(file.path), file.bytes), file.path);
     }
     for (std::size_t i = 0; i < files.size(); ++i) {
         std::error_code error;

@@ -13,8 +13,8 @@ struct OutputFile {
     std::vector<std::byte> bytes;
 };
 
-/// Opens the file as fopen does in this mode and writes the bytes.
-[[nodiscard]] std::error_code write_bytes(const std::filesystem::path& path, const char* mode,
+/// Writes the bytes to the file, whose content they replace, or to a pipe or a device.
+[[nodiscard]] std::error_code write_bytes(const std::filesystem::path& path,
                                           std::span<const std::byte> bytes);
 
 /// Writes all files or leaves all old ones as they are: the bytes go to new files in the same folders, which

@@ -10,6 +10,7 @@
 #include <stb/stb_image.h>
 #include <tinyexr.h>
 
+#include "engine/import/file_names.hpp"
 #include "engine/import/import_files.hpp"
 #include "engine/import/naming.hpp"
 #include "engine/import/sky_picture_size.hpp"
@@ -123,7 +124,7 @@ std::shared_ptr<const SkyPicture> decode_sky_picture(gltf::Bytes bytes) {
 }
 
 std::shared_ptr<const SkyPicture> load_sky_picture(const std::filesystem::path& path) {
-    return gltf::naming_file(path.string(), [&] {
+    return gltf::naming_file(gltf::utf8_of(path), [&] {
         gltf::ImportBudget budget({});
         return decode_sky_picture(gltf::read_file(path, "the file", budget));
     });

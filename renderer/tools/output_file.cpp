@@ -31,7 +31,7 @@ void write_file(const fs::path& path, std::span<const std::byte> bytes) {
     if (!fs::exists(status)) return replace_file(path, bytes);
     // A symbolic link stays a link: its target is replaced.
     if (fs::is_regular_file(status)) return replace_file(fs::canonical(path), bytes);
-    if (const std::error_code error = write_bytes(path, "wb", bytes)) {
+    if (const std::error_code error = write_bytes(path, bytes)) {
         throw ToolError(fmt::format("{}: cannot be written: {}", path.string(), error.message()));
     }
 }
