@@ -38,8 +38,9 @@ bool take_test_seed() {
     fmt::print(stderr, "random tests draw from seed {} (CANDELA_TEST_SEED)\n",
                taken_seed);  // stdout is for the list of tests
     // By default RapidCheck uses a random seed.
-    const std::string parameters = fmt::format("{} seed={}", environment("RC_PARAMS"), taken_seed);
-    return setenv("RC_PARAMS", parameters.c_str(), 1) == 0;
+    static std::string parameters;  // becomes a part of the environment
+    parameters = fmt::format("RC_PARAMS={} seed={}", environment("RC_PARAMS"), taken_seed);
+    return putenv(parameters.data()) == 0;
 }
 
 }  // namespace candela

@@ -9,11 +9,11 @@
 #include <string>
 #include <vector>
 
-#include <stdlib.h>
 #include <nlohmann/json.hpp>
 
 #include <candela/ecs/world.hpp>
 #include <candela/scene/gltf.hpp>
+#include "tests/new_folder.hpp"
 
 namespace candela::test {
 
@@ -29,11 +29,7 @@ inline void append(void* bytes, void* data, int size) {
 /// A new directory, removed with its contents on destruction.
 class TemporaryDirectory {
  public:
-    TemporaryDirectory() {
-        std::string name = (std::filesystem::temp_directory_path() / "candela-XXXXXX").string();
-        if (!mkdtemp(name.data())) throw std::runtime_error("no temporary directory");
-        path_ = name;
-    }
+    TemporaryDirectory() = default;
     TemporaryDirectory(const TemporaryDirectory&) = delete;
     TemporaryDirectory& operator=(const TemporaryDirectory&) = delete;
     ~TemporaryDirectory() { std::filesystem::remove_all(path_); }
@@ -41,7 +37,7 @@ class TemporaryDirectory {
     [[nodiscard]] std::filesystem::path operator/(const char* name) const { return path_ / name; }
 
  private:
-    std::filesystem::path path_;
+    std::filesystem::path path_ = new_folder();
 };
 
 inline void write_file(const std::filesystem::path& path, const Bytes& bytes) {

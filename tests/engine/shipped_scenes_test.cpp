@@ -203,7 +203,8 @@ TEST_CASE("each has the expected numbers of triangles and lights, and bounds") {
     }
 }
 
-TEST_CASE("the generator writes the shipped files, and the large scenes on demand") {
+TEST_CASE("the generator writes the shipped files, and the large scenes on demand" *
+          doctest::test_suite("posix")) {
     const TemporaryDirectory directory;
     generate(directory / "shipped", "");
     for (const fs::path& path : shipped_files()) {
@@ -332,7 +333,8 @@ TEST_CASE("the fallen boxes stand on others") {
     }
 }
 
-TEST_CASE("a few lights reach each point of the floors of the halls and the fins scene") {
+TEST_CASE("a few lights reach each point of the floors of the halls and the fins scene" *
+          doctest::test_suite("posix")) {
     const TemporaryDirectory directory;
     generate(directory / "", "hall --lights 64");
     // The halls must agree, otherwise another number of lights would change more than the size. There is

@@ -1,24 +1,17 @@
 #pragma once
 
-#include <unistd.h>
-
 #include <cstddef>
 #include <filesystem>
 #include <iterator>
-#include <string>
 
-#include <doctest/doctest.h>
+#include "tests/new_folder.hpp"
 
 namespace candela::sandbox {
 
 /// An empty folder that is removed with the object.
 class TemporaryFolder {
  public:
-    TemporaryFolder() {
-        std::string name = (std::filesystem::temp_directory_path() / "candela-XXXXXX").string();
-        REQUIRE(::mkdtemp(name.data()) != nullptr);
-        path_ = name;
-    }
+    TemporaryFolder() = default;
     TemporaryFolder(const TemporaryFolder&) = delete;
     TemporaryFolder& operator=(const TemporaryFolder&) = delete;
     ~TemporaryFolder() { std::filesystem::remove_all(path_); }
@@ -30,7 +23,7 @@ class TemporaryFolder {
     }
 
  private:
-    std::filesystem::path path_;
+    std::filesystem::path path_ = test::new_folder();
 };
 
 }  // namespace candela::sandbox
