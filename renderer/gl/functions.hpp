@@ -1,5 +1,10 @@
 #pragma once
 
+// The calling convention of GL. Unless it is defined, glcorearb.h includes windows.h, whose macros replace
+// names.
+#if defined(_WIN32) && !defined(APIENTRY)
+#define APIENTRY __stdcall
+#endif
 #include <GL/glcorearb.h>
 
 #include <candela/gl_loader.hpp>
