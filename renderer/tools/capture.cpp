@@ -62,7 +62,7 @@ glm::vec2 pixel_jitter(int i, int count) {
     return pixel_sample(static_cast<std::uint32_t>(first + i));
 }
 
-class Capture::State {
+class CANDELA_PRIVATE Capture::State {
  public:
     State(Renderer& renderer, const gl::GetProc& get_proc, glm::uvec2 size)
         : renderer_(renderer),

@@ -73,7 +73,7 @@ candela::Ray to_local(const candela::Ray& ray, const glm::mat4& local_from_world
 
 }  // namespace
 
-class SceneRays::State {
+class CANDELA_PRIVATE SceneRays::State {
  public:
     State() = default;
     State(const State&) = delete;

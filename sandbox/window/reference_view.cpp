@@ -1,6 +1,7 @@
 #include "sandbox/window/reference_view.hpp"
 
-#include <stdexcept>
+#include <candela/tools/picture_error.hpp>
+#include <candela/tools/tool_error.hpp>
 
 namespace candela::sandbox {
 
@@ -33,7 +34,7 @@ std::optional<double> ReferenceView::error_of(const tools::Picture& shown) const
     if (!picture_ || picture_->samples == 0 || shown.size != picture_->radiance.size) return std::nullopt;
     try {
         return tools::relative_mse(shown, picture_->radiance, picture_->hit);
-    } catch (const std::invalid_argument&) {
+    } catch (const tools::ToolError&) {
         return std::nullopt;  // no surface is seen, or the picture is not finite
     }
 }

@@ -2,10 +2,10 @@
 
 #include <algorithm>
 #include <cmath>
-#include <stdexcept>
 
 #include <doctest/doctest.h>
 
+#include <candela/tools/tool_error.hpp>
 #include "tests/study/test_pictures.hpp"
 
 namespace candela::study {
@@ -163,7 +163,7 @@ TEST_CASE("pixels outside the mask are excluded from the mean") {
     const Flip one = flip(picture, grey(0.0F), hit);
     CHECK(one.map == all.map);
     CHECK(one.mean == all.map[0]);
-    CHECK_THROWS_AS((void)flip(picture, noise({3, 3}, 1)), std::invalid_argument);
+    CHECK_THROWS_AS((void)flip(picture, noise({3, 3}, 1)), tools::ToolError);
 }
 }  // TEST_SUITE("flip")
 

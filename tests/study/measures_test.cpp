@@ -6,6 +6,7 @@
 
 #include <doctest/doctest.h>
 
+#include <candela/tools/tool_error.hpp>
 #include "tests/study/test_pictures.hpp"
 
 namespace candela::study {
@@ -167,21 +168,20 @@ TEST_CASE("with a black reference, a black picture has no error, others an infin
 TEST_CASE("pictures that cannot be compared are refused") {
     const Picture picture = constant({4, 3}, glm::vec3(1.0F));
     CHECK_THROWS_WITH_AS((void)measure(picture, constant({3, 4}, glm::vec3(1.0F))),
-                         "a picture of 4x3 cannot be compared with one of 3x4", std::invalid_argument);
+                         "a picture of 4x3 cannot be compared with one of 3x4", tools::ToolError);
     CHECK_THROWS_WITH_AS((void)measure(picture, picture, Mask(11, 1)), "a mask of 11 pixels does not fit 4x3",
-                         std::invalid_argument);
-    CHECK_THROWS_WITH_AS((void)measure(picture, picture, Mask(12, 0)), "no pixel counts",
-                         std::invalid_argument);
-    CHECK_THROWS_WITH_AS((void)measure({}, {}), "no pixel counts", std::invalid_argument);
+                         tools::ToolError);
+    CHECK_THROWS_WITH_AS((void)measure(picture, picture, Mask(12, 0)), "no pixel counts", tools::ToolError);
+    CHECK_THROWS_WITH_AS((void)measure({}, {}), "no pixel counts", tools::ToolError);
     for (const float value :
          {std::numeric_limits<float>::quiet_NaN(), std::numeric_limits<float>::infinity()}) {
         Picture bad = picture;
         bad.pixels[6].g = value;
         CHECK(first_not_finite(bad) == glm::ivec2(2, 1));
         CHECK_THROWS_WITH_AS((void)measure(bad, picture), "the picture: pixel (2, 1) is not finite",
-                             std::invalid_argument);
+                             tools::ToolError);
         CHECK_THROWS_WITH_AS((void)measure(picture, bad), "the reference: pixel (2, 1) is not finite",
-                             std::invalid_argument);
+                             tools::ToolError);
     }
     CHECK(first_not_finite(picture) == std::nullopt);
 }
@@ -254,8 +254,8 @@ TEST_CASE("sequences that do not fit are refused") {
     CHECK_THROWS_AS((void)flicker(two, two, mask), std::invalid_argument);
     std::vector<Picture> grown = two;
     grown[1] = constant({3, 2}, glm::vec3(1.0F));
-    CHECK_THROWS_AS((void)flicker(two, grown), std::invalid_argument);
-    CHECK_THROWS_AS((void)flicker(grown, grown), std::invalid_argument);
+    CHECK_THROWS_AS((void)flicker(two, grown), tools::ToolError);
+    CHECK_THROWS_AS((void)flicker(grown, grown), tools::ToolError);
 }
 
 }  // TEST_SUITE("flicker")
