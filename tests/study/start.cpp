@@ -1,10 +1,14 @@
+#include <sys/wait.h>
 #include <unistd.h>
 
 #include <fmt/format.h>
 #include <array>
 #include <chrono>
+#include <cstdio>
 #include <cstdlib>
+#include <exception>
 #include <filesystem>
+#include <functional>
 #include <stdexcept>
 #include <string_view>
 #include <utility>
@@ -88,6 +92,30 @@ StartTimes start_once(const StartedWorld& started, glm::uvec2 pixels, StartKind 
     return times;
 }
 
+/// A process of its own for each start: Mesa opens its cache of shaders once per process.
+StartTimes in_another_process(const std::function<StartTimes()>& measure_start) {
+    std::array<int, 2> pipe_ends{};
+    if (::pipe(pipe_ends.data()) != 0) throw std::runtime_error("there is no pipe to another process");
+    const pid_t child = ::fork();
+    if (child == 0) {
+        bool written = false;
+        try {
+            const StartTimes times = measure_start();
+            written = ::write(pipe_ends[1], &times, sizeof(times)) == sizeof(times);
+        } catch (const std::exception& error) {
+            fmt::print(stderr, "{}\n", error.what());
+        }
+        std::_Exit(written ? 0 : 1);
+    }
+    ::close(pipe_ends[1]);
+    StartTimes times;
+    const bool complete = child > 0 && ::read(pipe_ends[0], &times, sizeof(times)) == sizeof(times);
+    ::close(pipe_ends[0]);
+    if (child > 0) ::waitpid(child, nullptr, 0);
+    if (!complete) throw std::runtime_error("a renderer did not start");
+    return times;
+}
+
 double median_of(const std::vector<StartTimes>& measured, double StartTimes::*time) {
     std::vector<double> values;
     for (const StartTimes& each : measured) values.push_back(each.*time);
@@ -118,38 +146,49 @@ StartedWorld world_of(const fs::path& scene) {
     return read;
 }
 
-/// A folder for program caches, removed at the end.
+/// A folder for caches, removed at the end.
 class CacheFolder {
  public:
-    CacheFolder() : path_(fs::temp_directory_path() / fmt::format("candela-start-{}", ::getpid())) {}
+    CacheFolder() : path_(fs::temp_directory_path() / fmt::format("candela-start-{}", ::getpid())) {
+        fs::create_directories(path_);
+    }
     CacheFolder(const CacheFolder&) = delete;
     CacheFolder& operator=(const CacheFolder&) = delete;
     ~CacheFolder() {
         std::error_code ignored;
         fs::remove_all(path_, ignored);
     }
-    [[nodiscard]] const fs::path& path() const { return path_; }
+
+    /// Starts with an empty cache of Mesa's, which is not switched off, because Mesa would then give no
+    /// programs away.
+    StartTimes start(const StartedWorld& started, glm::uvec2 pixels, StartKind kind) {
+        const fs::path of_mesa = path_ / fmt::format("mesa-{}", starts_++);
+        ::setenv("MESA_SHADER_CACHE_DIR", of_mesa.c_str(), 1);
+        const StartTimes times =
+            in_another_process([&] { return start_once(started, pixels, kind, path_ / "programs"); });
+        fs::remove_all(of_mesa);
+        return times;
+    }
 
  private:
     fs::path path_;
+    int starts_ = 0;
 };
 
 }  // namespace
 
 int start(const StartStudy& study) {
-    ::setenv("MESA_SHADER_CACHE_DISABLE", "true", 0);
     std::vector<StartedWorld> worlds;
     worlds.push_back(empty_world());
     worlds.push_back(world_of(study.scene));
-    const CacheFolder cache;
-    for (const StartedWorld& each : worlds) start_once(each, study.size, StartKind::cached, cache.path());
+    CacheFolder caches;
+    for (const StartedWorld& each : worlds) caches.start(each, study.size, StartKind::cached);
 
     std::array<std::array<std::vector<StartTimes>, starts.size()>, 2> times;
     for (int round = 0; round < study.rounds; ++round) {
         for (std::size_t i = 0; i < worlds.size(); ++i) {
             for (std::size_t j = 0; j < starts.size(); ++j) {
-                times.at(i).at(j).push_back(
-                    start_once(worlds[i], study.size, starts.at(j).kind, cache.path()));
+                times.at(i).at(j).push_back(caches.start(worlds[i], study.size, starts.at(j).kind));
             }
         }
     }

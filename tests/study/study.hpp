@@ -120,7 +120,7 @@ struct StartStudy {
 };
 /// Prints what it takes from the constructor of a renderer to its first picture, of an empty world and of a
 /// scene: without a program cache, with one that was filled before, and what of it `prepare` can do ahead.
-/// The driver's own cache is off, unless the environment variable MESA_SHADER_CACHE_DISABLE says otherwise.
+/// Each start is a process of its own, in which the driver's own cache is empty if the driver is Mesa.
 int start(const StartStudy& study);
 
 /// The input of `scale`.
