@@ -15,11 +15,12 @@ static_assert(PointLighting::free_uniform_bindings > UNIFORMS_LAST);
 static_assert(PointLighting::free_texture_units > UNIT_VPL_MAPS);
 
 PointLighting make_point_lighting(const Gpu& gpu, const Lighting& lighting) {
-    return PointLighting(std::make_shared<const PointLighting::Parts>(&gpu, lighting));
+    return PointLighting(std::make_shared<const PointLighting::Parts>(PointLighting::Parts{&gpu, lighting}));
 }
 
 std::string PointLighting::glsl() const {
-    return parts_->gpu->programs().source_part("receivers/point_lighting.glsl", lighting_variant(parts_->lighting));
+    return parts_->gpu->programs().source_part("receivers/point_lighting.glsl",
+                                               lighting_variant(parts_->lighting));
 }
 
 void PointLighting::read(Pass& pass) const {
