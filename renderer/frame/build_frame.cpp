@@ -87,11 +87,12 @@ struct WantedVpls {
     [[nodiscard]] bool any() const { return shown.emitted || shown.reflected; }
 };
 
-WantedVpls wanted_vpls(const Configuration& configuration, const FrameShape& shape) {
+/// `extended`: there are passes of the host's.
+WantedVpls wanted_vpls(const Configuration& configuration, const FrameShape& shape, bool extended) {
     const FrameContents& contents = shape.contents;
     const bool has_emission = contents.emitters || contents.sky;
     // Where there is no surface, none reflects light; but the sky may light what the host draws.
-    const bool has_lit = contents.surfaces.any() || shape.receivers ||
+    const bool has_lit = contents.surfaces.any() || shape.receivers || extended ||
                          std::ranges::any_of(shape.views, &ViewShape::host_surfaces);
     WantedVpls wanted{.settings = configuration.vpls,
                       .bound = configuration.geometry_bound,
@@ -200,9 +201,10 @@ VplLight add_other_set(FrameGraph& graph, Gpu& gpu, WantedVpls wanted, const Lit
 /// The light of the wanted VPLs, if any.
 std::optional<SharedVpls> add_vpls(FrameGraph& graph, Gpu& gpu, const Configuration& configuration,
                                    const FrameShape& shape, const LitScene& lit,
-                                   std::optional<ValueHandle<Refinement>> refinement, FrameHandles& frame) {
+                                   std::optional<ValueHandle<Refinement>> refinement, bool extended,
+                                   FrameHandles& frame) {
     const FrameContents& contents = shape.contents;
-    const WantedVpls wanted = wanted_vpls(configuration, shape);
+    const WantedVpls wanted = wanted_vpls(configuration, shape, extended);
     if (!wanted.any()) return std::nullopt;
     std::optional<SurfelInputs> inputs;
     if (wanted.settings.placement == VplPlacement::surfels) {
@@ -304,7 +306,8 @@ FrameHandles build_frame(FrameGraph& graph, Gpu& gpu, const Configuration& confi
 
     const LitScene lit = add_scene(graph, gpu, configuration, shape.contents, frame);
     const std::optional<ValueHandle<Refinement>> refinement = add_cameras(graph, configuration, lit, frame);
-    const std::optional<SharedVpls> vpls = add_vpls(graph, gpu, configuration, shape, lit, refinement, frame);
+    const std::optional<SharedVpls> vpls =
+        add_vpls(graph, gpu, configuration, shape, lit, refinement, !extensions.empty(), frame);
     if (shape.receivers) light_receivers(graph, gpu, configuration, lit, vpls, frame);
     const SharedFrame shared{configuration, shape.contents, shape.quality, lit, vpls, extensions};
     for (std::size_t i = 0; i < frame.views.size(); ++i) {

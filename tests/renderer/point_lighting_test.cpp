@@ -4,6 +4,7 @@
 
 #include <glm/geometric.hpp>
 #include <memory>
+#include <numbers>
 #include <string>
 #include <vector>
 
@@ -196,6 +197,18 @@ TEST_CASE_FIXTURE(PointLightingTests,
     add(scene.world, at({0.0F, 0.5F, 0.0F}), MeshInstance{square(3.0F, diffuse(glm::vec3(0.5F)))});
     evaluate("candela_light(0u, position).irradiance");
     CHECK(values(scene) == std::vector<glm::vec3>(point_count));
+}
+
+TEST_CASE_FIXTURE(PointLightingTests, "a uniform sky gives π L, also in a world without surfaces") {
+    Scene scene;
+    scene.camera = add(scene.world, looking({0, 1, 3}, {0, 1, 0}), Camera{});
+    const Environment sky{.radiance = {0.5F, 1.0F, 2.0F}, .picture = nullptr};
+    add(scene.world, sky);
+    configure(linear_configuration());
+    evaluate(from_all_vpls);
+    const std::vector<glm::vec3> expected(point_count, std::numbers::pi_v<float> * sky.radiance);
+    // The sky is a few hundred patches, each above the horizon or below it as a whole: some percent.
+    CHECK(worst_difference(values(scene), expected) < 0.05);
 }
 
 TEST_CASE_FIXTURE(PointLightingTests, "they are evaluated again when the light changes, and only then") {
