@@ -54,10 +54,8 @@ class RecordingBackend final : public Backend {
         targets = {};
         bound.clear();
         if (given) {
-            targets = {{given->colour.begin(), given->colour.end()},
-                       given->depth,
-                       given->size,
-                       given->writes_depth};
+            targets = {
+                {given->colour.begin(), given->colour.end()}, given->depth, given->size, given->writes_depth};
         }
         ++open_passes;
     }
