@@ -18,9 +18,10 @@ struct Lighting;
 /// to the frame graph that is being declared.
 class CANDELA_API PointLighting {
  public:
-    /// GLSL 4.50 of functions and of what they need, to be put between #version and the host's own code, in
-    /// any stage. It depends on the configuration and on what the world contains: compile again when it has
-    /// changed. The functions, which shaders/receivers/point_lighting.glsl describes:
+    /// GLSL 4.50 of functions and of what they need, to be put after the directive with the version and
+    /// before the host's own code, in any stage. It depends on the configuration and on what the world
+    /// contains: compile again when it has changed. The functions, which
+    /// shaders/receivers/point_lighting.glsl describes:
     ///
     ///     uint candela_light_count();
     ///     Incident candela_light(uint index, vec3 position, vec3 normal);  // .direction, .irradiance
