@@ -35,8 +35,10 @@ class FreshFiles {
     }
 
     const fs::path& add(const fs::path& target) {
-        paths_.push_back(target);
-        return paths_.back() += fmt::format(".{:08x}.part", number_);
+        // Not made from the target's name, which may be as long as names can be.
+        paths_.push_back(target.parent_path() /
+                         fmt::format(".candela-{:08x}-{}.part", number_, paths_.size()));
+        return paths_.back();
     }
     [[nodiscard]] const fs::path& operator[](std::size_t i) const { return paths_[i]; }
 

@@ -1,6 +1,7 @@
 #include <candela/tools/capture.hpp>
 
 #include <cstddef>
+#include <functional>
 #include <utility>
 
 #include <fmt/format.h>
@@ -71,7 +72,8 @@ class CANDELA_PRIVATE Capture::State {
           linear_(device_, size, Format::rgba32f),
           encoded_(device_, size, Format::rgba8) {}
 
-    [[nodiscard]] Picture render(const World& world, Entity camera, int samples, CaptureReport& report);
+    [[nodiscard]] Picture render(const World& world, Entity camera, int samples, CaptureReport& report,
+                                 const std::function<bool()>& goes_on);
     [[nodiscard]] std::optional<double> estimate_error(const World& world, Entity camera);
     [[nodiscard]] std::vector<std::uint8_t> tone_mapped(const Picture& picture);
 
@@ -90,20 +92,23 @@ void Capture::State::add_pixels(std::vector<glm::vec3>& sum) const {
     for (std::size_t i = 0; i < sum.size(); ++i) sum[i] += glm::vec3(texels[i]);
 }
 
-Picture Capture::State::render(const World& world, Entity camera, int samples, CaptureReport& report) {
+Picture Capture::State::render(const World& world, Entity camera, int samples, CaptureReport& report,
+                               const std::function<bool()>& goes_on) {
     const LinearOutput linear(renderer_);
     const std::vector<FrameReport> earlier = renderer_.take_frames(true);
     std::vector<glm::vec3> sum(static_cast<std::size_t>(size_.x) * size_.y);
     std::vector<FrameReport> frames;
     const bool refines = renderer_.configuration().refinement.enabled;
-    const int kept = refines ? 1 : samples;
-    for (int sample = 0; sample < samples; ++sample) {
+    int sample = 0;
+    do {
         const glm::vec2 jitter = refines ? glm::vec2(0.0F) : pixel_jitter(sample, samples);
         renderer_.render(world, camera, linear_.target(), jitter);
-        if (sample >= samples - kept) add_pixels(sum);
+        if (!refines) add_pixels(sum);
         for (FrameReport& frame : renderer_.take_frames(true)) frames.push_back(std::move(frame));
-    }
-    for (glm::vec3& pixel : sum) pixel /= static_cast<float>(kept);
+    } while (++sample < samples && (!goes_on || goes_on()));
+    if (refines) add_pixels(sum);
+    const auto kept = static_cast<float>(refines ? 1 : sample);
+    for (glm::vec3& pixel : sum) pixel /= kept;
     report = {sum_up(frames), renderer_.report()};
     return flipped({glm::ivec2(size_), std::move(sum)});
 }
@@ -124,13 +129,14 @@ Capture::Capture(Renderer& renderer, const gl::GetProc& get_proc, glm::ivec2 siz
     : state_(std::make_unique<State>(renderer, get_proc, glm::uvec2(size))) {}
 Capture::~Capture() = default;
 
-Picture Capture::render(const World& world, Entity camera, int samples, CaptureReport& report) {
-    return state_->render(world, camera, samples, report);
+Picture Capture::render(const World& world, Entity camera, int samples, CaptureReport& report,
+                        const std::function<bool()>& goes_on) {
+    return state_->render(world, camera, samples, report, goes_on);
 }
 
 Picture Capture::render(const World& world, Entity camera, int samples) {
     CaptureReport ignored;
-    return state_->render(world, camera, samples, ignored);
+    return state_->render(world, camera, samples, ignored, {});
 }
 
 std::optional<double> Capture::estimate_error(const World& world, Entity camera) {

@@ -28,7 +28,7 @@ Configuration read_over(const Configuration& base, const Options& options, const
 }
 
 bool is_one_picture_of_many_frames(const Options& options) {
-    const bool one_picture = options.out && numbered(*options.out, 0) == *options.out;
+    const bool one_picture = options.out && !is_numbered(*options.out);
     return one_picture && options.frames.value_or(1) > 1 && !options.animate;
 }
 

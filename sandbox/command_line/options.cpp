@@ -353,4 +353,8 @@ fs::path numbered(const fs::path& out, int frame) {
     return out.parent_path() / result;
 }
 
+bool is_numbered(const fs::path& out) {
+    return numbered(out, 0) != out;
+}
+
 }  // namespace candela::sandbox

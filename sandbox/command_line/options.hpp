@@ -63,5 +63,7 @@ void apply_settings(const Options& options, Configuration& configuration);
 /// the number with at least five digits. Without them all frames have the same name, and only the last one is
 /// written.
 [[nodiscard]] std::filesystem::path numbered(const std::filesystem::path& out, int frame);
+/// Whether each frame has a file of its own.
+[[nodiscard]] bool is_numbered(const std::filesystem::path& out);
 
 }  // namespace candela::sandbox

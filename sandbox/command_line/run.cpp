@@ -133,21 +133,22 @@ Configuration exposed(ChosenConfiguration chosen, const Scene& scene, const Opti
     return chosen.configuration;
 }
 
-void run_session(const Options& options, const MakeReference& make_reference) {
+ExitStatus run_session(const Options& options, const MakeReference& make_reference) {
     ConfigWatch watch(options);
     const bool windowed = wants_window(options);
     ChosenConfiguration chosen = choose_with_exposure(options, windowed);
     if (options.list_configs || options.print_config) {
         fmt::print("{}", options.list_configs ? list_configurations()
                                               : write_configuration(chosen.configuration) + "\n");
-        return;
+        return success;
     }
     std::vector<std::string> tried;
     if (const std::unique_ptr<Window> window =
             open_window(options, options.size.value_or(window_size), tried)) {
-        return run_window(
+        run_window(
             *window, [&](const TellProgress& tell) { return open_scene(options, tell); }, chosen, watch,
             options, make_reference);
+        return success;
     }
     for (const std::string& error : tried) print_message("no window: " + error);
     Scene scene = open_scene(options, {});
@@ -156,15 +157,14 @@ void run_session(const Options& options, const MakeReference& make_reference) {
     const Entity camera = choose_camera(scene.world, options.camera, aspect(size));
     const std::unique_ptr<HeadlessContext> context = open_headless(options.context, tried);
     if (windowed) chosen = choose_with_exposure(options, false);
-    run_headless(*context, scene, camera, exposed(chosen, scene, options), options, size);
+    return run_headless(*context, scene, camera, exposed(chosen, scene, options), options, size);
 }
 
 }  // namespace
 
 ExitStatus run(const Options& options, const MakeReference& make_reference) {
     try {
-        run_session(options, make_reference);
-        return success;
+        return run_session(options, make_reference);
     } catch (const ContextError& error) {
         return report_error(error.what(), no_driver);
     } catch (const gl::MemoryError& error) {

@@ -10,6 +10,7 @@
 #include "sandbox/animation/clips.hpp"
 #include "sandbox/command_line/messages.hpp"
 #include "sandbox/headless/report.hpp"
+#include "sandbox/headless/stop_signals.hpp"
 #include "sandbox/headless/update_budget.hpp"
 
 namespace candela::sandbox {
@@ -22,11 +23,6 @@ GraphFormat graph_format(const fs::path& path) {
     const std::string extension = tools::lower_extension(path);
     if (extension == ".dot") return GraphFormat::dot;
     return extension == ".json" ? GraphFormat::json : GraphFormat::text;
-}
-
-/// In a numbered series each frame has its own file; without numbers only the last frame is written.
-bool is_written(const fs::path& out, int frame, int frames) {
-    return numbered(out, frame) != out || frame == frames - 1;
 }
 
 }  // namespace
@@ -45,8 +41,8 @@ void apply(Renderer& renderer, const Configuration& configuration) {
     if (!errors.empty()) throw std::runtime_error(fmt::format("{}", fmt::join(errors, "; ")));
 }
 
-void run_headless(const HeadlessContext& context, Scene& scene, Entity camera,
-                  const Configuration& configuration, const Options& options, glm::ivec2 size) {
+ExitStatus run_headless(const HeadlessContext& context, Scene& scene, Entity camera,
+                        const Configuration& configuration, const Options& options, glm::ivec2 size) {
     Renderer renderer(context.get_proc(), {.shader_directory = options.shaders.value_or(fs::path()).string(),
                                            .log = print_message});
     apply(renderer, configuration);
@@ -58,30 +54,37 @@ void run_headless(const HeadlessContext& context, Scene& scene, Entity camera,
         context.description(), scene.path.string(), animation_of(scene), size, configuration, {}, {}};
     ClipPlayback clips;
     UpdateBudget budget(options.update_budget.value_or(0.0));
-    for (int frame = 0; frame < frames; ++frame) {
+    const StopSignals signals;
+    const auto goes_on = [&] { return !signals.received(); };
+    int frame = 0;
+    for (bool is_last = false; !is_last; ++frame) {
         apply(renderer, budget.limited(configuration));
         if (scene.animation) scene.animation->apply(scene.world, frame);
         clips.advance(scene.world, frame == 0 ? 0.0 : seconds_a_frame);
         tools::CaptureReport captured;
-        const tools::Picture picture = capture.render(scene.world, camera, options.samples, captured);
+        const tools::Picture picture =
+            capture.render(scene.world, camera, options.samples, captured, goes_on);
         budget.learn(captured.frame);
         captured.frame.index = static_cast<std::uint64_t>(frame);
         run.frames.push_back(std::move(captured.frame));
         run.state = std::move(captured.state);
-        if (out && is_written(*out, frame, frames)) capture.write(numbered(*out, frame), picture);
+        is_last = frame == frames - 1 || !goes_on();
+        if (out && (is_last || is_numbered(*out))) capture.write(numbered(*out, frame), picture);
         check_finite(picture, frame);
     }
     run.environment = environment_of(scene.world);
     write_graph(options, renderer);
-    if (options.report && run.state.vpls) {
+    if (options.report && run.state.vpls && goes_on()) {
         run.state.vpls->estimated_error = capture.estimate_error(scene.world, camera);
     }
     write_report(options, run);
 
     fmt::print("{} on {}, {}x{}\n", run.context, run.state.gl_renderer, size.x, size.y);
     fmt::print("{}", to_table(run.frames.back(), run.state));
-    if (out) fmt::print("picture          {}\n", fs::absolute(numbered(*out, frames - 1)).string());
+    if (out) fmt::print("picture          {}\n", fs::absolute(numbered(*out, frame - 1)).string());
     check_energy(run.scene, run.state);
+    const std::optional<int> signal = signals.received();
+    return signal ? stopped_by(*signal) : success;
 }
 
 tools::Picture whole_picture(Renderer& renderer, tools::Capture& capture, const World& world, Entity camera,

@@ -7,6 +7,7 @@
 #include <candela/renderer.hpp>
 #include <candela/tools/capture.hpp>
 #include <candela/tools/run_report.hpp>
+#include "sandbox/command_line/exit_status.hpp"
 #include "sandbox/command_line/options.hpp"
 #include "sandbox/scene/scene.hpp"
 
@@ -22,9 +23,11 @@ namespace candela::sandbox {
 /// Renders the frames, applies the scene's animation, writes what the options ask for and prints a table of
 /// the last frame. `context` must be current. Throws std::runtime_error for outputs that cannot be written,
 /// gl::GlError for unsupported sizes, and PictureError if a picture is not finite or if the light of the last
-/// frame does not add up.
-void run_headless(const HeadlessContext& context, Scene& scene, Entity camera,
-                  const Configuration& configuration, const Options& options, glm::ivec2 size);
+/// frame does not add up. After SIGINT or SIGTERM, the frame that is being rendered is the last one, with the
+/// samples that it has by then. Returns success, or by what signal it was stopped.
+[[nodiscard]] ExitStatus run_headless(const HeadlessContext& context, Scene& scene, Entity camera,
+                                      const Configuration& configuration, const Options& options,
+                                      glm::ivec2 size);
 
 /// Writes --report if it is asked for.
 void write_report(const Options& options, const tools::RunReport& report);

@@ -224,6 +224,15 @@ TEST_CASE("files that are not pictures are refused by name") {
     }
     CHECK(names(error_of([&] { (void)read_exr(folder / ""); }), folder / ""));
 }
+
+TEST_CASE("a file's name may be as long as the file system allows") {
+    const TemporaryFolder folder;
+    const fs::path longest = folder / (std::string(251, 'n') + ".txt").c_str();  // 255 bytes: NAME_MAX
+    tools::write_text(longest, "first");
+    tools::write_text(longest, "second");
+    CHECK(read(longest) == "second");
+    CHECK(folder.file_count() == 1);
+}
 }  // TEST_SUITE("picture")
 
 }  // namespace candela::sandbox

@@ -1,10 +1,13 @@
 #include "sandbox/command_line/run.hpp"
 
+#include <chrono>
+#include <csignal>
 #include <filesystem>
 #include <fstream>
 #include <iterator>
 #include <map>
 #include <string>
+#include <thread>
 
 #include <doctest/doctest.h>
 #include <glm/geometric.hpp>
@@ -69,6 +72,31 @@ TEST_CASE("the same command gives the same picture, bit for bit") {
     options.out = folder / "again.pfm";
     REQUIRE(run(options) == 0);
     CHECK(first.pixels == read_pfm(*options.out).pixels);
+}
+
+TEST_CASE("a signal ends a headless run after the frame that is being rendered, which is written") {
+    for (const int signal : {SIGTERM, SIGINT}) {
+        const TemporaryFolder folder;
+        Options options = small_headless();
+        options.frames = 100'000;
+        options.out = folder / "%d.pfm";
+        options.report = folder / "report.json";
+        std::thread sender([&] {
+            while (!std::filesystem::exists(folder / "2.pfm")) {
+                std::this_thread::sleep_for(std::chrono::milliseconds(1));
+            }
+            std::raise(signal);
+        });
+        CHECK(run(options) == 128 + signal);
+        sender.join();
+        const auto frames = static_cast<int>(folder.file_count()) - 1;
+        CHECK(frames >= 3);
+        CHECK(frames < 100'000);
+        const auto report = nlohmann::json::parse(std::ifstream(*options.report));
+        CHECK(static_cast<int>(report["frames"].size()) == frames);
+        const tools::Picture first = read_pfm(folder / "0.pfm");
+        CHECK(read_pfm(numbered(*options.out, frames - 1)).pixels == first.pixels);
+    }
 }
 
 TEST_CASE("frames of a static scene give one refined picture if the output is not numbered") {

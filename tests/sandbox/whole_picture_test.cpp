@@ -39,6 +39,32 @@ TEST_CASE("written pictures have full quality, however small the frame budget is
     CHECK(whole.size() == 48 * 36);
     CHECK(written(0.001F) == whole);
 }
+
+TEST_CASE("a capture that is not to go on is the mean of the samples until then") {
+    const auto context = HeadlessContext::create(ContextKind::egl);
+    context->make_current();
+    Scene scene = load_scene(shipped_file("scenes", "cornell.gltf"));
+    const Entity camera = choose_camera(scene.world, std::nullopt, 4.0F / 3.0F);
+    Renderer renderer(context->get_proc());
+    Configuration configuration;
+    configuration.vpls.count = 16;
+    tools::CaptureReport ignored;
+    SUBCASE("each with its place in the pixel") {
+        configuration.refinement.enabled = false;
+    }
+    SUBCASE("as the renderer refines it") {
+        configuration.refinement.enabled = true;
+    }
+    apply(renderer, configuration);
+    tools::Capture capture(renderer, context->get_proc(), size);
+    int left = 2;
+    const tools::Picture stopped =
+        capture.render(scene.world, camera, 1'000, ignored, [&] { return --left > 0; });
+    CHECK(stopped.size == size);
+    // The first two of an even number of samples are as far from the centre as both of two.
+    renderer.invalidate();
+    CHECK(capture.render(scene.world, camera, 2, ignored).pixels == stopped.pixels);
+}
 }  // TEST_SUITE("whole picture")
 
 }  // namespace candela::sandbox

@@ -2,6 +2,7 @@
 
 #include <cstdint>
 #include <filesystem>
+#include <functional>
 #include <memory>
 #include <optional>
 #include <vector>
@@ -38,8 +39,10 @@ class CANDELA_API Capture {
 
     /// The mean of `samples` >= 1 frames in linear radiance, jittered within the pixel (a box filter). With
     /// refinement the renderer does the jittering and averaging itself; then `samples` further frames go into
-    /// its running mean, and that mean is returned. Throws what Renderer::render throws.
-    [[nodiscard]] Picture render(const World& world, Entity camera, int samples, CaptureReport& report);
+    /// its running mean, and that mean is returned. `goes_on`, if any, is asked after each frame; false:
+    /// there are no more samples than those until then. Throws what Renderer::render throws.
+    [[nodiscard]] Picture render(const World& world, Entity camera, int samples, CaptureReport& report,
+                                 const std::function<bool()>& goes_on = {});
     [[nodiscard]] Picture render(const World& world, Entity camera, int samples);
 
     /// Renders the last frame again and returns VplReport::estimated_error; none without VPLs.
