@@ -73,9 +73,7 @@ int main() {
     host::Scene scene = host::make_scene();
     {
         candela::Renderer renderer(context->get_proc());
-        candela::Configuration configuration;
-        configuration.tone_map.enabled = false;
-        checks.check(renderer.configure(configuration).empty(), "the configuration");
+        host::show_radiance(renderer, checks);
         const host::Picture picture = host::make_picture(size);
         const auto frame = [&] {
             renderer.render(scene.world, scene.camera, {picture.framebuffer, size});

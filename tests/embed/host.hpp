@@ -37,6 +37,14 @@ inline std::unique_ptr<candela::HeadlessContext> make_context() {
     return context;
 }
 
+/// Turns the tone map off, so that targets hold linear radiance. Returns the configuration.
+inline candela::Configuration show_radiance(candela::Renderer& renderer, Checks& checks) {
+    candela::Configuration configuration;
+    configuration.tone_map.enabled = false;
+    checks.check(renderer.configure(configuration).empty(), "the configuration");
+    return configuration;
+}
+
 /// A texture, and a framebuffer with it as its first colour attachment.
 struct Picture {
     GLuint texture = 0;

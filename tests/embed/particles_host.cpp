@@ -55,9 +55,7 @@ int main() {
     host::Scene scene = host::make_scene();
     {
         candela::Renderer renderer(context->get_proc());
-        candela::Configuration configuration;
-        configuration.tone_map.enabled = false;
-        checks.check(renderer.configure(configuration).empty(), "the configuration");
+        candela::Configuration configuration = host::show_radiance(renderer, checks);
         checks.check(renderer.extend(make_sparks()).empty(), "the extension");
         const host::Picture picture = host::make_picture(size);
         const auto frame = [&] {

@@ -19,9 +19,7 @@ int main() {
     host::Scene scene = host::make_scene();
     {
         candela::Renderer renderer(context->get_proc());
-        candela::Configuration configuration;
-        configuration.tone_map.enabled = false;
-        checks.check(renderer.configure(configuration).empty(), "the configuration");
+        host::show_radiance(renderer, checks);
 
         const candela::Camera camera = scene.world.get<candela::Camera>(scene.camera);
         const float aspect = static_cast<float>(size.x) / static_cast<float>(size.y);

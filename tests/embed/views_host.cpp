@@ -24,9 +24,7 @@ int main() {
     host::Scene scene = host::make_scene();
     {
         candela::Renderer renderer(context->get_proc());
-        candela::Configuration configuration;
-        configuration.tone_map.enabled = false;
-        checks.check(renderer.configure(configuration).empty(), "the configuration");
+        host::show_radiance(renderer, checks);
 
         // The host draws a bar at the bottom with its own state, before and after.
         const glm::uvec2 all(2 * size.x, size.y + 8);
