@@ -23,7 +23,9 @@ void edit(SharedArray<int>& array, std::vector<int>& plain) {
     const int value = *rc::gen::inRange(0, 3);
     const int kind = *rc::gen::inRange(0, 8);
     if (kind == 0) {
-        const auto size = static_cast<std::size_t>(*rc::gen::inRange(0, 300));
+        // From one block to several groups of blocks.
+        const int most = *rc::gen::element(100, 300, 3 * static_cast<int>(SharedArray<int>::group_size));
+        const auto size = static_cast<std::size_t>(*rc::gen::inRange(0, most));
         array.resize(size);
         plain.resize(size);
     } else if (kind == 1 || plain.empty()) {
@@ -59,6 +61,10 @@ TEST_CASE("shared array: copies differ where plain ones do") {
             for (std::size_t i = 0; i < plain[from].size() && i < plain[to].size(); ++i) {
                 if (plain[from][i] != plain[to][i]) expected.push_back(i);
             }
+            RC_ASSERT(found == expected);
+            found.clear();
+            visit_changes(arrays[from], arrays[to], [&](std::size_t i) { found.push_back(i); });
+            for (std::size_t i = plain[from].size(); i < plain[to].size(); ++i) expected.push_back(i);
             RC_ASSERT(found == expected);
         }
     }));
