@@ -316,7 +316,7 @@ struct TraceTriangle {
     vec3 a;
     uint material;
     vec3 edge_ab;
-    uint id;      // increases in the order of the drawables; with TRIANGLE_MASKED: it may have holes of an alpha mask
+    uint id;      // increases in the order of entities and their primitives; with TRIANGLE_MASKED: it may have holes of an alpha mask
     vec3 edge_ac;
     uint colour_a;  // of the vertex: rgb in sRGB, and alpha, 8 bits each
     vec2 uv_a;

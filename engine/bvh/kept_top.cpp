@@ -53,7 +53,8 @@ void KeptTop::build(std::span<const PlacedBvh> objects, std::uint32_t most_opene
     link_leaves();
     must_build_ = false;
     all_changed_ = true;
-    ++topology_;
+    first_edit_ += edits_.size() + 1;
+    edits_.clear();
 }
 
 /// Finds the way from objects to their leaves, and from there up.
@@ -80,6 +81,7 @@ void KeptTop::link_leaves() {
 }
 
 void KeptTop::add_leaf(std::uint32_t leaf, std::uint32_t object) {
+    if (object >= first_leaf_.size()) first_leaf_.resize(object + std::size_t{1}, none);
     next_[leaf] = first_leaf_[object];
     first_leaf_[object] = leaf;
 }
@@ -87,7 +89,8 @@ void KeptTop::add_leaf(std::uint32_t leaf, std::uint32_t object) {
 /// `visit` may take the leaf from its object.
 template <class Visit>
 void KeptTop::visit_leaves(std::uint32_t object, Visit visit) const {
-    for (std::uint32_t leaf = first_leaf_[object]; leaf != none;) {
+    const bool is_known = object < first_leaf_.size();
+    for (std::uint32_t leaf = is_known ? first_leaf_[object] : none; leaf != none;) {
         visit(std::exchange(leaf, next_[leaf]));
     }
 }
@@ -96,28 +99,15 @@ void KeptTop::refit(std::span<const PlacedBvh> objects, std::span<const std::uin
     for (const std::uint32_t object : changed) {
         visit_leaves(object, [&](std::uint32_t leaf) {
             set_box(node_of_[leaf], box_of(objects[object].bvh->nodes[top_.leaves[leaf].node]));
+            note(Edit::Kind::node, node_of_[leaf]);
             fit_above(node_of_[leaf]);
         });
     }
 }
 
-void KeptTop::renumber(std::span<const std::uint32_t> now, std::size_t count) {
-    for (std::uint32_t object = 0; object < now.size(); ++object) {
-        if (now[object] == gone) remove(object);
-    }
-    std::vector<std::uint32_t> first_leaf(count, none);
-    for (std::uint32_t object = 0; object < now.size(); ++object) {
-        if (now[object] == gone) continue;
-        first_leaf[now[object]] = first_leaf_[object];
-        visit_leaves(object, [&](std::uint32_t leaf) { top_.leaves[leaf].object = now[object]; });
-    }
-    first_leaf_ = std::move(first_leaf);
-    ++topology_;
-}
-
 void KeptTop::remove(std::uint32_t object) {
     visit_leaves(object, [&](std::uint32_t leaf) { remove_leaf(leaf); });
-    first_leaf_[object] = none;
+    if (object < first_leaf_.size()) first_leaf_[object] = none;
 }
 
 /// The other child takes the place of the parent. The root's children stay in the first pair.
@@ -125,7 +115,7 @@ void KeptTop::remove_leaf(std::uint32_t leaf) {
     const std::uint32_t node = node_of_[leaf];
     must_build_ = must_build_ || node == 0;
     if (must_build_) return;
-    ++topology_;
+    note(Edit::Kind::removed_leaf, leaf);
     free_leaves_.push_back(leaf);
     const std::uint32_t above = parent(node);
     const std::uint32_t other = sibling(node);
@@ -157,6 +147,7 @@ void KeptTop::remove_leaf(std::uint32_t leaf) {
 void KeptTop::move_node(std::uint32_t from, std::uint32_t to) {
     top_.bvh.nodes[to] = top_.bvh.nodes[from];
     heights_[to] = heights_[from];
+    note(Edit::Kind::node, to);
     link(to);
 }
 
@@ -183,7 +174,6 @@ void KeptTop::insert(std::span<const PlacedBvh> objects, std::uint32_t object) {
         must_build_ = true;
         return;
     }
-    ++topology_;
     deepest_object_ = std::max(deepest_object_, bvh.depth);
     // What a new parent of the node and the object costs, or one of the node and so on below it: what boxes
     // grow by, and the new one.
@@ -203,6 +193,8 @@ void KeptTop::insert(std::span<const PlacedBvh> objects, std::uint32_t object) {
 
     const std::uint32_t pair = new_pair();
     const std::uint32_t leaf = new_leaf();
+    note(Edit::Kind::node, at);
+    note(Edit::Kind::node, pair + 1);
     parent(pair) = at;
     move_node(at, pair);
     top_.leaves[leaf] = {object, 0};
@@ -249,6 +241,8 @@ void KeptTop::rotate(std::uint32_t node) {
 void KeptTop::swap_nodes(std::uint32_t a, std::uint32_t b) {
     std::swap(top_.bvh.nodes[a], top_.bvh.nodes[b]);
     std::swap(heights_[a], heights_[b]);
+    note(Edit::Kind::node, a);
+    note(Edit::Kind::node, b);
     link(a);
     link(b);
 }
@@ -339,6 +333,21 @@ void KeptTop::note_wide(std::uint32_t node) {
         }
         node = parent(node);
     }
+}
+
+void KeptTop::note(Edit::Kind kind, std::uint32_t index) {
+    // Who has to follow more than this looks at all nodes.
+    const std::size_t most = std::max<std::size_t>(1024, top_.bvh.nodes.size());
+    if (edits_.size() >= most) {
+        edits_.erase(edits_.begin(), edits_.begin() + static_cast<std::ptrdiff_t>(most / 2));
+        first_edit_ += most / 2;
+    }
+    edits_.push_back({kind, index});
+}
+
+std::optional<std::span<const KeptTop::Edit>> KeptTop::edits_since(std::uint64_t revision) const {
+    if (revision < first_edit_ || revision > this->revision()) return std::nullopt;
+    return std::span(edits_).subspan(revision - first_edit_);
 }
 
 std::optional<std::vector<std::uint32_t>> KeptTop::take_changed() {

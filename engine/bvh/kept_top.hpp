@@ -15,17 +15,26 @@ namespace candela {
 /// Balltree Construction Algorithms", 1989), in its greedy form.
 class KeptTop {
  public:
-    static constexpr std::uint32_t gone = std::numeric_limits<std::uint32_t>::max();
+    static constexpr std::uint32_t none = std::numeric_limits<std::uint32_t>::max();
 
-    /// As build_top.
+    /// Something that was changed in the top.
+    struct Edit {
+        enum class Kind : std::uint8_t {
+            node,         ///< another node has come to this place, or it has another box as things have moved
+            removed_leaf  ///< the leaf is not in use any more, or in use for another object
+        };
+        Kind kind;
+        std::uint32_t index;  ///< of the node or leaf
+    };
+
+    /// As build_top. Objects without a hierarchy have an empty one there.
     void build(std::span<const PlacedBvh> objects, std::uint32_t most_opened = 1024);
 
     /// Fits the boxes to those of objects whose hierarchies were refitted.
     void refit(std::span<const PlacedBvh> objects, std::span<const std::uint32_t> changed);
 
-    /// Gives object i the number `now[i]`, or removes it if it is `gone`. There are `count` objects then.
-    /// Linear in the number of objects, as it renumbers.
-    void renumber(std::span<const std::uint32_t> now, std::size_t count);
+    /// Removes all leaves of an object, whose number is free then. Does nothing to one that is not in the
+    /// top.
     void remove(std::uint32_t object);
     /// Inserts the root of an object that is not in the top, unless that has no triangles.
     void insert(std::span<const PlacedBvh> objects, std::uint32_t object);
@@ -36,15 +45,20 @@ class KeptTop {
     [[nodiscard]] bool is_worn() const;
 
     [[nodiscard]] const TopBvh& top() const { return top_; }
-    /// Counts the changes of the top's nodes and leaves, other than of boxes.
-    [[nodiscard]] std::uint64_t topology() const { return topology_; }
+    /// Counts the changes.
+    [[nodiscard]] std::uint64_t revision() const { return first_edit_ + edits_.size(); }
+    /// The changes since the revision had this number; nullopt if the top was built since then, or they are
+    /// too many. Nodes above those that have changed are left out. Valid until the next change.
+    [[nodiscard]] std::optional<std::span<const Edit>> edits_since(std::uint64_t revision) const;
+    /// The parent of a node; `none` of the root and of places that are not in use.
+    [[nodiscard]] std::uint32_t parent_of(std::uint32_t node) const {
+        return node == 0 ? none : parents_[(node - 1) / 2];
+    }
 
     /// The numbers of the wide nodes that may have changed since the last call, ascending; nullopt: any may.
     [[nodiscard]] std::optional<std::vector<std::uint32_t>> take_changed();
 
  private:
-    static constexpr std::uint32_t none = gone;
-
     [[nodiscard]] std::uint32_t& parent(std::uint32_t node) { return parents_[(node - 1) / 2]; }
     /// Siblings are nodes 2i + 1 and 2i + 2.
     [[nodiscard]] static std::uint32_t sibling(std::uint32_t node) {
@@ -65,6 +79,7 @@ class KeptTop {
     [[nodiscard]] bool fit_to_children(std::uint32_t node);
     void fit_above(std::uint32_t node);
     void note_wide(std::uint32_t node);
+    void note(Edit::Kind kind, std::uint32_t index);
     template <class Visit>
     void visit_leaves(std::uint32_t object, Visit visit) const;
 
@@ -81,7 +96,8 @@ class KeptTop {
     double built_cost_ = 0.0;                // sah_cost after the last build
     float opened_above_ = 0.0F;              // half area of boxes that a build opens
     std::uint32_t deepest_object_ = 0;       // depth of its hierarchy
-    std::uint64_t topology_ = 0;
+    std::vector<Edit> edits_;                // the last ones
+    std::uint64_t first_edit_ = 0;           // revision before the first of them
     bool must_build_ = false;
     bool all_changed_ = true;
     std::vector<bool> is_noted_;          // by wide node

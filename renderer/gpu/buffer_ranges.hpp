@@ -4,6 +4,7 @@
 #include <cstdint>
 #include <limits>
 #include <span>
+#include <unordered_map>
 #include <vector>
 
 #include <candela/graph/execute.hpp>
@@ -20,30 +21,61 @@ struct BufferRange {
     bool uploaded = false;
 };
 
-/// Assigns places in a persistent buffer, which the running pass updates, to the ranges that have none:
-/// behind the others. If the buffer is too small then, or less than half of it up to there is in use, all
-/// ranges get new places and must be uploaded again. `ranges` are all that are in use; `end`, kept between
-/// calls, is the index behind the last one ever placed. The first `head` elements are left free. Returns
-/// whether all have got new places.
-template <class T>
-bool place_ranges(Execution& run, BufferHandle<T> buffer, std::span<BufferRange* const> ranges,
-                  std::uint32_t& end, std::uint32_t head = 0) {
-    std::uint32_t used = head;
-    for (BufferRange* range : ranges) {
-        used += range->count;
-        if (range->first == BufferRange::nowhere) {
-            range->first = end;
-            end += range->count;
+/// Which parts of a persistent buffer are in use.
+class RangePlaces {
+ public:
+    /// Gives the range a place: one of the same size that has become free, or one behind all others.
+    void give(BufferRange& range) {
+        used_ += range.count;
+        range.uploaded = false;
+        std::vector<std::uint32_t>& free = free_[range.count];
+        if (free.empty()) {
+            range.first = end_;
+            end_ += range.count;
+        } else {
+            range.first = free.back();
+            free.pop_back();
         }
     }
-    if (end <= run.count(buffer) && end / 2 <= used) return false;
-    end = head;
-    for (BufferRange* range : ranges) {
-        *range = {.first = end, .count = range->count};
-        end += range->count;
+    /// Frees the place of a range, if it has one.
+    void take_back(BufferRange& range) {
+        if (range.first == BufferRange::nowhere) return;
+        used_ -= range.count;
+        free_[range.count].push_back(range.first);
+        range = {.count = range.count};
     }
+    /// Nothing is in use but the first `head` elements.
+    void clear(std::uint32_t head) {
+        used_ = end_ = head;
+        free_.clear();
+    }
+    /// Whether a buffer of so many elements is too small, or less than half of it up to the end is in use.
+    [[nodiscard]] bool is_crowded(std::uint64_t capacity) const {
+        return end_ > capacity || end_ / 2 > used_;
+    }
+    /// Index behind the last element ever in use.
+    [[nodiscard]] std::uint32_t end() const { return end_; }
+
+ private:
+    std::uint32_t end_ = 0;
+    std::uint32_t used_ = 0;                                              // elements
+    std::unordered_map<std::uint32_t, std::vector<std::uint32_t>> free_;  // first elements, by size
+};
+
+/// Gives places in a persistent buffer, which the running pass updates, to those of the ranges that have
+/// none. If the buffer is too small then, or less than half of it is in use, all ranges of `all()` get new
+/// places behind the first `head` elements, and must be uploaded again. Returns whether that was so.
+template <class T, class All>
+bool place_ranges(Execution& run, BufferHandle<T> buffer, RangePlaces& places,
+                  std::span<BufferRange* const> ranges, All all, std::uint32_t head = 0) {
+    for (BufferRange* range : ranges) {
+        if (range->first == BufferRange::nowhere) places.give(*range);
+    }
+    if (!places.is_crowded(run.count(buffer))) return false;
+    places.clear(head);
+    for (BufferRange* range : all()) places.give(*range);
     // With room for additions.
-    run.reserve(buffer, end + end / 8 + 256);
+    run.reserve(buffer, places.end() + places.end() / 8 + 256);
     return true;
 }
 

@@ -46,6 +46,7 @@ struct DrawCommand {
     std::uint32_t first_index;
     std::int32_t base_vertex;
     std::uint32_t base_instance;
+    bool operator==(const DrawCommand&) const = default;
 };
 
 static_assert(BVH_STACK_SIZE >= wide_stack_size);

@@ -18,6 +18,15 @@ template <class T>
     return graph.buffer<T>(name, 1, Lifetime::persistent);
 }
 
+/// Ensures that a growing buffer can hold `count` elements, with room for more, so that it rarely grows.
+/// Returns whether its content was lost.
+template <class T>
+bool reserve_more(Execution& run, BufferHandle<T> buffer, std::uint64_t count) {
+    if (count <= run.count(buffer)) return false;
+    run.reserve(buffer, count + count / 2);
+    return true;
+}
+
 /// Uploads `data` as the content of a growing buffer that the running pass writes with Usage::copy.
 template <class T>
 void upload(const Gpu& gpu, Execution& run, BufferHandle<T> buffer, std::span<const T> data) {

@@ -31,19 +31,17 @@ class Objects {
         objects_.back().bvh = build_bvh(objects_.back().triangles, object_max_depth);
         next_node_ += static_cast<std::uint32_t>(objects_.back().bvh.nodes.size()) + 5;
         next_triangle_ += static_cast<std::uint32_t>(objects_.back().bvh.order.size()) + 3;
-        std::vector<std::uint32_t> same(objects_.size() - 1);
-        std::iota(same.begin(), same.end(), 0U);
-        top_.renumber(same, objects_.size());
         top_.insert(placed_objects(), static_cast<std::uint32_t>(objects_.size() - 1));
         keep_or_build();
     }
     void remove(std::size_t i) {
-        std::vector<std::uint32_t> now(objects_.size());
-        std::iota(now.begin(), now.begin() + static_cast<std::ptrdiff_t>(i), 0U);
-        std::iota(now.begin() + static_cast<std::ptrdiff_t>(i) + 1, now.end(), static_cast<std::uint32_t>(i));
-        now[i] = KeptTop::gone;
-        objects_.erase(objects_.begin() + static_cast<std::ptrdiff_t>(i));
-        top_.renumber(now, objects_.size());
+        // The last one takes its number.
+        const auto last = static_cast<std::uint32_t>(objects_.size() - 1);
+        top_.remove(static_cast<std::uint32_t>(i));
+        top_.remove(last);
+        objects_[i] = objects_.back();
+        objects_.pop_back();
+        if (i < last) top_.insert(placed_objects(), static_cast<std::uint32_t>(i));
         keep_or_build();
     }
     template <class Change>

@@ -28,15 +28,14 @@ class Surroundings {
  public:
     void add(const std::shared_ptr<const Mesh>& mesh, const glm::mat4& world = glm::mat4(1.0F)) {
         const auto item = static_cast<std::uint32_t>(layout_.geometry.items.size());
-        const Primitive& primitive = mesh->primitives.front();
         layout_.geometry.items.push_back({.entity = {item, 0}, .mesh = mesh});
-        Box bounds;
-        for (const Vertex& vertex : primitive.vertices) bounds.grow(vertex.position);
-        layout_.drawables.push_back({.item = item, .primitive = &primitive, .material = 0, .bounds = bounds});
-        layout_.materials = {primitive.material};
-        ++layout_.solid_count;
+        DrawnPrimitive drawn{.mesh = mesh};
+        for (const Vertex& vertex : drawn.primitive().vertices) drawn.bounds.grow(vertex.position);
+        layout_.drawables.push_back(
+            {.item = item, .drawn = std::make_shared<const DrawnPrimitive>(std::move(drawn))});
+        layout_.first_of_item.push_back(item);
         placement_.world.push_back(world);
-        hierarchy_.update(layout_, placement_, true);
+        hierarchy_.update(layout_, placement_);
     }
 
     [[nodiscard]] TracedScene traced() const { return {hierarchy_, layout_, placement_}; }
@@ -44,11 +43,12 @@ class Surroundings {
     /// All triangles, in world space.
     [[nodiscard]] std::vector<Triangle> triangles() const {
         std::vector<Triangle> all;
-        for (const SceneLayout::Drawable& drawable : layout_.drawables) {
-            const std::vector<Triangle> own = place_triangles(layout_, drawable, drawable.primitive->vertices,
-                                                              placement_.world[drawable.item]);
+        layout_.visit_solids([&](std::uint32_t i) {
+            const SceneLayout::Drawable& drawable = layout_.drawables[i];
+            const std::vector<Triangle> own = place_triangles(
+                layout_, drawable, drawable.primitive().vertices, placement_.world[drawable.item]);
             all.insert(all.end(), own.begin(), own.end());
-        }
+        });
         return all;
     }
 

@@ -86,6 +86,39 @@ TEST_CASE_FIXTURE(GlFixture, "only what comes or moves is uploaded") {
     CHECK(uploaded() > all / 2);
 }
 
+TEST_CASE_FIXTURE(GlFixture, "what is uploaded when a thing comes or goes does not depend on how many stay") {
+    const auto uploads_among = [&](std::uint32_t things) {
+        TestedRenderer renderer(Uploads::counting(context->get_proc()));
+        REQUIRE(renderer.configure(direct_only()).empty());
+        Scene scene = ground();  // without lights, whose shadow maps list all that casts shadows
+        const MeshInstance small{box_inwards(0.01F, diffuse({0.2F, 0.4F, 0.8F}))};
+        const auto place = [](std::uint32_t i) {
+            return at({0.04F * static_cast<float>(i % 64) - 1.3F, 0.5F, -0.04F * static_cast<float>(i / 64)});
+        };
+        std::vector<Entity> all;
+        for (std::uint32_t i = 0; i < things; ++i) all.push_back(add(scene.world, place(i), small));
+        const RenderTarget target(device, picture_size);
+        const auto uploaded = [&] {
+            static_cast<void>(Uploads::take());
+            renderer.render(scene.world, scene.camera, target.target());
+            return Uploads::take();
+        };
+        static_cast<void>(uploaded());
+        std::vector<std::uint64_t> bytes;
+        for (std::uint32_t i = 0; i < 9; ++i) {
+            scene.world.destroy(all[things / 10 * (i + 1)]);
+            bytes.push_back(uploaded());
+            static_cast<void>(add(scene.world, place(things / 2 + 3 * i), small));
+            bytes.push_back(uploaded());
+        }
+        std::ranges::nth_element(bytes, bytes.begin() + 9);
+        return bytes[9];
+    };
+    // The way up the hierarchy is longer by the logarithm to base 2 of 16: four nodes of 64 bytes, in as many
+    // wide nodes. A list of all would be 16 times as long.
+    CHECK(uploads_among(8000) < uploads_among(500) + 2000);
+}
+
 TEST_CASE_FIXTURE(PathFixture, "light does not leak through a wall under which the floor has moved") {
     // Which part of a floor's cell lies behind the wall changes, though nothing has moved near the rays
     // that find it: they run 0.15 m above the floor, and the floor is flat.

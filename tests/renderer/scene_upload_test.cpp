@@ -44,11 +44,6 @@ void add_square(World& world, Change change, Transform transform = {}) {
     add(world, transform, MeshInstance{square(0.5F, material)});
 }
 
-void make_glass(Material& material) {
-    material.base_colour.a = 0.5F;
-    material.alpha_mode = AlphaMode::blend;
-}
-
 std::shared_ptr<const Image> grey() {
     return std::make_shared<const Image>(
         Image{.width = 1, .height = 1, .texels = {glm::u8vec4(128, 128, 128, 255)}});
@@ -84,13 +79,6 @@ TEST_CASE_FIXTURE(GlFixture, "materials that bind something else, and mirrored m
     add_square(world, [&](Material& material) { material.double_sided = true; });
     add_square(world, [&](Material& material) { material.alpha_mode = AlphaMode::mask; });
     CHECK(group_sizes(context->get_proc(), world) == std::vector<std::uint32_t>(8, 1));
-}
-
-TEST_CASE_FIXTURE(GlFixture, "blended meshes are drawn one by one") {
-    World world;
-    add_square(world, make_glass);
-    add_square(world, make_glass);
-    CHECK(group_sizes(context->get_proc(), world) == std::vector<std::uint32_t>{1, 1});
 }
 
 }  // TEST_SUITE("scene upload")

@@ -48,7 +48,7 @@ Primitive strip(Random& random, std::uint32_t triangles) {
 }
 
 /// The layout of one item with one drawable, whose indices start at 30.
-SceneLayout layout_of(const Primitive& primitive) {
+SceneLayout layout_of(Primitive primitive) {
     constexpr std::size_t part_size = 3 * triangles_per_part;
     const auto index_count = static_cast<std::uint32_t>(primitive.indices.size());
     std::vector<Box> parts((index_count + part_size - 1) / part_size);
@@ -57,16 +57,19 @@ SceneLayout layout_of(const Primitive& primitive) {
         parts[i / part_size].grow(primitive.vertices[i].position);
         whole.grow(primitive.vertices[i].position);
     }
+    DrawnPrimitive drawn{.bounds = whole};
+    drawn.mesh = std::make_shared<const Mesh>(Mesh{"strip", {std::move(primitive)}});
+    if (parts.size() > 1) drawn.parts = parts;
     SceneLayout layout;
+    layout.first_of_item.push_back(0);
     layout.drawables.push_back(
-        {.item = 0, .primitive = &primitive, .material = 0, .bounds = whole, .index_in_mesh = 0});
-    if (parts.size() > 1) layout.drawables[0].parts = std::make_shared<const std::vector<Box>>(parts);
+        {.item = 0, .drawn = std::make_shared<const DrawnPrimitive>(std::move(drawn))});
+    layout.draw_of.push_back(0);
     layout.draws.push_back({.index_count = index_count,
                             .instance_count = 1,
                             .first_index = 30,
                             .base_vertex = 7,
                             .base_instance = 0});
-    layout.solid_count = 1;
     return layout;
 }
 

@@ -32,9 +32,9 @@ bool follows(const gpu::DrawCommand& draw, const gpu::DrawCommand& before) {
 std::vector<ShadowCaster> shadow_casters(const SceneLayout& layout, const ScenePlacement& placement,
                                          float margin) {
     std::vector<ShadowCaster> casters;
-    for (std::size_t i = 0; i < layout.solid_count; ++i) {
+    layout.visit_solids([&](std::uint32_t i) {
         const SceneLayout::Drawable& drawable = layout.drawables[i];
-        const gpu::DrawCommand& whole = layout.draws[i];
+        const gpu::DrawCommand& whole = layout.draws[layout.draw_of[i]];
         const std::span<const Box> parts = parts_of(drawable, placement.deformed);
         const auto part_size = parts.size() > 1 ? 3 * triangles_per_part : whole.index_count;
         for (std::uint32_t part = 0; part < parts.size(); ++part) {
@@ -45,7 +45,7 @@ std::vector<ShadowCaster> shadow_casters(const SceneLayout& layout, const SceneP
             caster.draw.index_count = std::min(part_size, whole.index_count - part * part_size);
             casters.push_back(caster);
         }
-    }
+    });
     return casters;
 }
 

@@ -17,7 +17,7 @@ struct ShadowCaster {
     Box bounds;  ///< contains them; world space, metres
 };
 
-/// All triangles that cast shadows, in the order in which they are drawn, by parts of their primitives.
+/// All triangles that cast shadows, in the order of the items, by parts of their primitives.
 /// `margin`: more than the rounding of their positions, metres.
 [[nodiscard]] std::vector<ShadowCaster> shadow_casters(const SceneLayout& layout,
                                                        const ScenePlacement& placement, float margin);

@@ -4,7 +4,6 @@
 #include <algorithm>
 #include <array>
 #include <memory>
-#include <numeric>
 #include <span>
 #include <utility>
 #include <vector>
@@ -20,9 +19,9 @@ namespace {
 /// The hierarchy, and where its parts lie in the buffers: the nodes of the top come first.
 struct UploadedHierarchy {
     SceneHierarchy scene;
-    std::uint32_t top_room = 0;   // nodes
-    std::uint32_t nodes_end = 0;  // see place_ranges
-    std::uint32_t triangles_end = 0;
+    std::uint32_t top_room = 0;  // nodes
+    RangePlaces nodes;
+    RangePlaces triangles;
 };
 
 struct HierarchyBuffers {
@@ -45,30 +44,45 @@ std::uint32_t top_size_of(const SceneHierarchy& scene) {
     return std::max(static_cast<std::uint32_t>(scene.top.top().bvh.nodes.size() / 2), 1U);
 }
 
-bool has_place(const ObjectHierarchy& object) {
-    return object.nodes.first != BufferRange::nowhere && object.triangles.first != BufferRange::nowhere;
+std::vector<std::uint32_t> all_objects(const SceneHierarchy& scene) {
+    const Objects& objects = scene.objects;
+    std::vector<std::uint32_t> all;
+    for (std::uint32_t i = 0; i < objects.size(); ++i) {
+        if (objects[i]) all.push_back(i);
+    }
+    return all;
 }
 
-/// Assigns places in the buffers to what has none. Returns whether any that had one has got another.
-bool place(Execution& run, const HierarchyBuffers& buffers, UploadedHierarchy& uploaded,
-           std::span<const std::uint32_t> all) {
-    const Objects& objects = uploaded.scene.objects;
-    const std::uint32_t top_size = top_size_of(uploaded.scene);
+/// Frees the places in the buffers of what is gone, and gives places to what has none. Returns whether any
+/// that had one has got another.
+bool place(Execution& run, const HierarchyBuffers& buffers, UploadedHierarchy& uploaded) {
+    SceneHierarchy& scene = uploaded.scene;
+    SceneHierarchy::Freed freed = scene.take_freed();
+    for (BufferRange& range : freed.nodes) uploaded.nodes.take_back(range);
+    for (BufferRange& range : freed.triangles) uploaded.triangles.take_back(range);
+
+    const auto every = [&](BufferRange ObjectHierarchy::*range) {
+        return ranges_of(scene.objects, all_objects(scene), range);
+    };
+    const bool moved_triangles =
+        place_ranges(run, buffers.triangles, uploaded.triangles,
+                     ranges_of(scene.objects, scene.changed(), &ObjectHierarchy::triangles),
+                     [&] { return every(&ObjectHierarchy::triangles); });
+    std::vector<BufferRange*> nodes = ranges_of(scene.objects, scene.changed(), &ObjectHierarchy::nodes);
+    const std::uint32_t top_size = top_size_of(scene);
     const bool other_top = top_size > uploaded.top_room;
     if (other_top) {
-        uploaded.top_room = uploaded.nodes_end = top_size + top_size / 4;
-        for (const auto& object : objects) {
-            object->nodes = {.count = object->nodes.count};
-        }
+        uploaded.top_room = top_size + top_size / 4;
+        uploaded.nodes.clear(uploaded.top_room);
+        nodes = every(&ObjectHierarchy::nodes);
+        for (BufferRange* range : nodes) *range = {.count = range->count};
     }
-    const bool moved_triangles = place_ranges(
-        run, buffers.triangles, ranges_of(objects, all, &ObjectHierarchy::triangles), uploaded.triangles_end);
-    for (const auto& object : objects) {
-        object->nodes.uploaded &= !moved_triangles;  // they contain the places of triangles
+    const bool moved_nodes = place_ranges(
+        run, buffers.nodes, uploaded.nodes, nodes, [&] { return every(&ObjectHierarchy::nodes); },
+        uploaded.top_room);
+    if (moved_triangles) {  // nodes contain their places
+        for (BufferRange* range : every(&ObjectHierarchy::nodes)) range->uploaded = false;
     }
-    const bool moved_nodes =
-        place_ranges(run, buffers.nodes, ranges_of(objects, all, &ObjectHierarchy::nodes), uploaded.nodes_end,
-                     uploaded.top_room);
     return other_top || moved_triangles || moved_nodes;
 }
 
@@ -111,7 +125,7 @@ void upload_objects(const Gpu& gpu, Execution& run, const HierarchyBuffers& buff
                       const SceneLayout::Drawable& drawable = layout.drawables[object];
                       const std::span<const Vertex> vertices = vertices_of(drawable, deformed);
                       write_triangles(layout, drawable, vertices, *scene.objects[object],
-                                      scene.ids[object].first, writer);
+                                      scene.ids.first(scene.objects[object]->key()), writer);
                   });
 }
 
@@ -134,27 +148,12 @@ void upload_top(const Gpu& gpu, Execution& run, const HierarchyBuffers& buffers,
     writer.flush();
 }
 
-/// Whether the top or any object that has changed has no place in the buffers.
-bool lacks_place(const UploadedHierarchy& uploaded) {
-    const SceneHierarchy& scene = uploaded.scene;
-    return top_size_of(scene) > uploaded.top_room ||
-           !std::ranges::all_of(scene.changed(),
-                                [&](std::uint32_t i) { return has_place(*scene.objects[i]); });
-}
-
 /// Uploads what has changed since the last call.
 void upload_hierarchy(const Gpu& gpu, Execution& run, const HierarchyBuffers& buffers,
-                      UploadedHierarchy& uploaded, const SceneLayout& layout, const Deformations& deformed,
-                      bool other_layout) {
+                      UploadedHierarchy& uploaded, const SceneLayout& layout, const Deformations& deformed) {
     SceneHierarchy& scene = uploaded.scene;
-    std::vector<std::uint32_t> which = scene.changed();
-    bool all = false;
-    if (other_layout || lacks_place(uploaded)) {
-        std::vector<std::uint32_t> every(scene.objects.size());
-        std::iota(every.begin(), every.end(), 0U);
-        all = place(run, buffers, uploaded, every);
-        if (all) which = std::move(every);
-    }
+    const bool all = place(run, buffers, uploaded);
+    const std::vector<std::uint32_t> which = all ? all_objects(scene) : scene.changed();
     for (const std::uint32_t i : which) scene.note_place(i);
     upload_objects(gpu, run, buffers, scene, which, layout, deformed);
     upload_top(gpu, run, buffers, scene, all);
@@ -191,9 +190,8 @@ Tracing add_bvh(FrameGraph& graph, Gpu& gpu, const SceneData& scene) {
             const std::shared_ptr<UploadedHierarchy> uploaded =
                 run.has_result() ? *run.previous(kept) : std::make_shared<UploadedHierarchy>();
             const ScenePlacement& placement = run.value(placement_handle);
-            const bool other_layout = run.changed(layout_handle);
-            uploaded->scene.update(layout, placement, other_layout);
-            upload_hierarchy(gpu, run, buffers, *uploaded, layout, placement.deformed, other_layout);
+            uploaded->scene.update(layout, placement);
+            upload_hierarchy(gpu, run, buffers, *uploaded, layout, placement.deformed);
             const SceneMetrics now = uploaded->scene.metrics();
             warn_of_rounding(gpu.log(), now);
             run.set(metrics, now);

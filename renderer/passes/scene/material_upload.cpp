@@ -7,6 +7,7 @@
 #include <glm/common.hpp>
 #include <glm/packing.hpp>
 #include <iterator>
+#include <numeric>
 #include <span>
 
 #include "engine/scene/decoded.hpp"
@@ -193,32 +194,14 @@ TracedReflection traced_reflection(const Material& material, float metalness, fl
 
 }  // namespace
 
-void MaterialTable::begin() {
-    materials_.begin();
-    images_.begin();
-    normals_.begin();
-}
-
-std::uint32_t MaterialTable::index_of(const std::shared_ptr<const Material>& material) {
-    const std::uint32_t index = materials_[materials_.use(material.get(), [&] {
-        const std::uint32_t taken = take_index();
-        by_index_[taken].material = material;
-        return taken;
-    })];
-    for (std::size_t slot = 0; slot < material_image_slots.size(); ++slot) {
-        by_index_[index].images[slot] = number_of((*material).*material_image_slots[slot].image, slot);
-    }
-    return index;
-}
-
-std::uint32_t MaterialTable::take_index() {
-    if (free_.empty()) {
-        by_index_.emplace_back();
-        return static_cast<std::uint32_t>(by_index_.size() - 1);
-    }
-    const std::uint32_t index = free_.back();
-    free_.pop_back();
-    return index;
+std::uint32_t MaterialTable::take(const std::shared_ptr<const Material>& material) {
+    return materials_.take(material.get(), [&] {
+        Listed listed{.material = material};
+        for (std::size_t slot = 0; slot < material_image_slots.size(); ++slot) {
+            listed.images[slot] = number_of((*material).*material_image_slots[slot].image, slot);
+        }
+        return listed;
+    });
 }
 
 /// The number of the image in a slot of a material. Normals have mip levels of their own, also of an image
@@ -226,9 +209,23 @@ std::uint32_t MaterialTable::take_index() {
 std::uint32_t MaterialTable::number_of(const std::shared_ptr<const Image>& image, std::size_t slot) {
     if (!image) return 0;
     if (slot == normal_slot) {
-        return normals_.use(image.get(), [&] { return upload_normal_image(*gpu_, image); }) + 1;
+        return normals_.take(image.get(), [&] { return upload_normal_image(*gpu_, image); }) + 1;
     }
-    return images_.use(image.get(), [&] { return upload_image(*gpu_, image); }) + 1;
+    return images_.take(image.get(), [&] { return upload_image(*gpu_, image); }) + 1;
+}
+
+void MaterialTable::drop_unused() {
+    materials_.drop_unused([&](std::uint32_t index) {
+        const Material& material = *materials_[index].material;
+        for (std::size_t slot = 0; slot < material_image_slots.size(); ++slot) {
+            const auto& image = material.*material_image_slots[slot].image;
+            if (image) (slot == normal_slot ? normals_ : images_).release(image.get());
+        }
+        dropped_.push_back(index);
+    });
+    for (UseCache<Image, UploadedImage>* const images : {&images_, &normals_}) {
+        images->drop_unused([&](std::uint32_t number) { texel_places_.take_back((*images)[number].range); });
+    }
 }
 
 const UploadedImage& MaterialTable::image_of(const Listed& listed, std::size_t slot) const {
@@ -239,7 +236,7 @@ const UploadedImage& MaterialTable::image_of(const Listed& listed, std::size_t s
 }
 
 glm::vec3 MaterialTable::mean_albedo(std::uint32_t material) const {
-    const Listed& listed = by_index_[material];
+    const Listed& listed = materials_[material];
     const gpu::Material record = record_of(listed);
     return record.traced_share * glm::vec3(record.base_colour) * mean_of_image(listed, base_colour_slot) +
            record.traced_mirror;
@@ -251,7 +248,7 @@ glm::vec3 MaterialTable::mean_of_image(const Listed& listed, std::size_t slot) c
 }
 
 MaterialBinding MaterialTable::binding_of(std::uint32_t material) const {
-    const Listed& listed = by_index_[material];
+    const Listed& listed = materials_[material];
     MaterialBinding binding{.alpha = drawn_alpha(*listed.material),
                             .double_sided = listed.material->double_sided,
                             .emits = emits(*listed.material),
@@ -260,14 +257,6 @@ MaterialBinding MaterialTable::binding_of(std::uint32_t material) const {
         binding.textures[slot] = image_of(listed, slot).texture;
     }
     return binding;
-}
-
-std::vector<std::shared_ptr<const Material>> MaterialTable::materials() const {
-    std::vector<std::shared_ptr<const Material>> materials;
-    for (const Listed& listed : by_index_) {
-        materials.push_back(listed.material);
-    }
-    return materials;
 }
 
 gpu::Material MaterialTable::record_of(const Listed& listed) const {
@@ -304,36 +293,49 @@ gpu::Material MaterialTable::record_of(const Listed& listed) const {
 }
 
 void MaterialTable::upload(Execution& run, BufferHandle<gpu::Material> materials,
-                           BufferHandle<std::uint32_t> texels) {
-    materials_.drop_unused();
-    images_.drop_unused();
-    normals_.drop_unused();
-    std::vector<bool> used(by_index_.size());
-    for (const std::uint32_t* index : materials_.used()) {
-        used[*index] = true;
-    }
-    free_.clear();
-    for (std::uint32_t index = 0; index < by_index_.size(); ++index) {
-        if (!used[index]) {
-            by_index_[index] = {};
-            free_.push_back(index);
-        }
-    }
+                           BufferHandle<std::uint32_t> texels, SceneLayout& layout) {
+    std::vector<std::uint32_t> changed = materials_.take_added();
+    changed.insert(changed.end(), dropped_.begin(), dropped_.end());
+    dropped_.clear();
+    layout.materials.resize(materials_.size());
+    for (const std::uint32_t index : changed) layout.materials.set(index, materials_[index].material);
 
-    std::vector<UploadedImage*> images = images_.used();
-    images.insert(images.end(), normals_.used().begin(), normals_.used().end());
-    std::vector<BufferRange*> ranges;
-    std::ranges::transform(images, std::back_inserter(ranges),
-                           [](UploadedImage* image) { return &image->range; });
-    place_ranges(run, texels, ranges, texels_end_);
-    upload_ranges(*gpu_, run, texels, ranges, [&](std::size_t i, BufferWriter<std::uint32_t>& writer) {
+    // Records contain where texels are.
+    const bool other_texels = upload_texels(run, texels);
+    if (reserve_more(run, materials, materials_.size()) || other_texels) {
+        changed.resize(materials_.size());
+        std::iota(changed.begin(), changed.end(), 0U);
+    }
+    std::ranges::sort(changed);
+    BufferWriter<gpu::Material> writer(*gpu_, run.object(materials));
+    for (const std::uint32_t index : changed) {
+        writer.seek(index);
+        writer.push_back(record_of(materials_[index]));
+    }
+    writer.flush();
+}
+
+/// Returns whether any that were there have got other places.
+bool MaterialTable::upload_texels(Execution& run, BufferHandle<std::uint32_t> texels) {
+    std::vector<UploadedImage*> images;
+    const auto add = [&](UploadedImage& image) { images.push_back(&image); };
+    const auto ranges = [&] {
+        std::vector<BufferRange*> all;
+        for (UploadedImage* image : images) all.push_back(&image->range);
+        return all;
+    };
+    for (const std::uint32_t number : images_.take_added()) add(images_[number]);
+    for (const std::uint32_t number : normals_.take_added()) add(normals_[number]);
+    const bool moved = place_ranges(run, texels, texel_places_, ranges(), [&] {
+        images.clear();
+        images_.visit(add);
+        normals_.visit(add);
+        return ranges();
+    });
+    upload_ranges(*gpu_, run, texels, ranges(), [&](std::size_t i, BufferWriter<std::uint32_t>& writer) {
         writer.append(images[i]->texels);
     });
-    std::vector<gpu::Material> records;
-    for (const Listed& listed : by_index_) {
-        records.push_back(record_of(listed));
-    }
-    candela::upload<gpu::Material>(*gpu_, run, materials, records);
+    return moved;
 }
 
 }  // namespace candela

@@ -1,6 +1,7 @@
 #pragma once
 
 #include <cstdint>
+#include <map>
 #include <memory>
 #include <span>
 #include <vector>
@@ -9,55 +10,59 @@
 #include "engine/bvh/box.hpp"
 #include "renderer/gpu/buffer_ranges.hpp"
 #include "renderer/gpu/gpu_types.hpp"
-#include "renderer/passes/scene/scene_upload.hpp"
+#include "renderer/passes/scene/material_upload.hpp"
+#include "renderer/passes/scene/scene_layout.hpp"
 #include "renderer/passes/scene/use_cache.hpp"
 
 namespace candela {
 
-/// A primitive in the vertex and index buffers.
-struct UploadedPrimitive {
-    std::shared_ptr<const Mesh> mesh;  ///< keeps the primitive alive
-    const Primitive* primitive = nullptr;
-    Box bounds;                                       ///< local space
-    std::shared_ptr<const std::vector<Box>> parts{};  ///< as in SceneLayout::Drawable
-    glm::vec3 mean_colour{0.0F};                      ///< of its vertices, linear
-    BufferRange vertices;
-    BufferRange indices;
-};
-
 /// The box around the vertices; at the origin if there are none.
 [[nodiscard]] Box box_around(std::span<const Vertex> vertices);
 
-/// The distinct primitives of the scenes, one after the other, in the vertex and index buffers, and the
-/// vertices of those that are deformed. What two successive scenes share is uploaded once.
+/// The meshes in use, in the vertex and index buffers, and the vertices of drawables that are deformed.
 class MeshTable {
  public:
-    /// Starts another scene. After that, `add` its primitives and `upload` them.
-    void begin();
-    /// Adds a primitive of the scene.
-    const UploadedPrimitive& add(const std::shared_ptr<const Mesh>& mesh, const Primitive& primitive);
-    /// Adds vertices in place of those of the drawable's primitive. Call in the order of the drawables.
-    void add_deformed(const SceneLayout::Drawable& drawable);
-    /// Uploads what is new, and forgets what is no longer used. If only deformations have changed, this is
-    /// the only call.
-    void upload(const Gpu& gpu, Execution& run, BufferHandle<Vertex> vertices,
-                BufferHandle<std::uint32_t> indices, const Deformations& deformations);
+    using Primitives = std::vector<std::shared_ptr<const DrawnPrimitive>>;
 
-    /// Commands that draw one instance of each drawable, after `upload`.
-    [[nodiscard]] std::vector<gpu::DrawCommand> draws(std::span<const SceneLayout::Drawable> drawables);
+    /// Counts one more use of a mesh. Returns its primitives; their materials are in the table from then on.
+    const Primitives& take(const std::shared_ptr<const Mesh>& mesh, MaterialTable& materials);
+    /// Ends one use. Without any, the mesh and its materials are forgotten by drop_unused.
+    void release(const Mesh& mesh) { meshes_.release(&mesh); }
+    void drop_unused(MaterialTable& materials);
+
+    /// Adds vertices in place of those of a drawable's primitive.
+    void add_deformed(std::uint32_t drawable, const DrawnPrimitive& drawn);
+    void remove_deformed(std::uint32_t drawable);
+
+    /// Uploads what is new, and deformed vertices that have changed. Returns whether anything has got another
+    /// place than before.
+    bool upload(const Gpu& gpu, Execution& run, BufferHandle<Vertex> vertices,
+                BufferHandle<std::uint32_t> indices, const SceneLayout& layout,
+                const Deformations& deformations);
+
+    /// The command that draws one instance of a drawable with this number, after `upload`.
+    [[nodiscard]] gpu::DrawCommand draw(std::uint32_t number, const DrawnPrimitive& drawn) const;
 
  private:
+    struct Ranges {
+        BufferRange vertices;
+        BufferRange indices;
+    };
+    struct Uploaded {
+        std::shared_ptr<const Mesh> mesh;
+        Primitives primitives;
+        std::vector<Ranges> ranges{};  // by primitive
+    };
     /// The deformed vertices of a drawable.
     struct Deformed {
-        SceneLayout::Drawable drawable;
         std::shared_ptr<const DeformedMesh::Vertices> vertices;  // that are uploaded
         BufferRange range;
     };
 
-    UseCache<Primitive, UploadedPrimitive> primitives_;
-    std::vector<Deformed> deformed_;
-    std::uint32_t vertices_end_ = 0;  // see place_ranges
-    std::uint32_t indices_end_ = 0;
+    UseCache<Mesh, Uploaded> meshes_;
+    std::map<std::uint32_t, Deformed> deformed_;  // by drawable
+    RangePlaces vertex_places_;
+    RangePlaces index_places_;
 };
 
 }  // namespace candela

@@ -2,9 +2,6 @@
 
 #include <algorithm>
 #include <glm/common.hpp>
-#include <limits>
-#include <numeric>
-#include <optional>
 #include <span>
 #include <utility>
 
@@ -25,8 +22,7 @@ std::shared_ptr<const DeformedMesh::Vertices> deformed_vertices(const Deformatio
 /// The same drawable, in the way that it was last made from.
 bool is_made_from(const ObjectHierarchy::Source& source, const SceneLayout& layout,
                   const SceneLayout::Drawable& drawable, const ScenePlacement& placement) {
-    return source.is_made && source.material == drawable.material &&
-           source.mirrored == layout.geometry.items[drawable.item].mirrored &&
+    return source.is_made && source.mirrored == layout.geometry.items[drawable.item].mirrored &&
            source.world == placement.world[drawable.item] &&
            source.vertices == deformed_vertices(placement.deformed, drawable.item);
 }
@@ -51,140 +47,70 @@ bool fit(ObjectHierarchy& object, std::span<const Triangle> triangles) {
     return true;
 }
 
-/// The positions of a longest increasing subsequence of the first ids (Schensted, 1961).
-std::vector<std::size_t> longest_rise(const std::vector<IdRange>& ids) {
-    constexpr std::size_t none = std::numeric_limits<std::size_t>::max();
-    std::vector<std::size_t> last;  // position of the smallest last id of the subsequences of each length
-    std::vector<std::size_t> before(ids.size(), none);
-    for (std::size_t i = 0; i < ids.size(); ++i) {
-        if (ids[i].first == IdRange::unset) continue;
-        const bool is_largest = last.empty() || ids[last.back()].first < ids[i].first;
-        const auto at = is_largest ? last.end()
-                                   : std::ranges::lower_bound(last, ids[i].first, {},
-                                                              [&](std::size_t p) { return ids[p].first; });
-        before[i] = at == last.begin() ? none : *(at - 1);
-        if (at == last.end()) {
-            last.push_back(i);
-        } else {
-            *at = i;
-        }
-    }
-    std::vector<std::size_t> rise;
-    for (std::size_t i = last.empty() ? none : last.back(); i != none; i = before[i]) {
-        rise.push_back(i);
-    }
-    std::ranges::reverse(rise);
-    return rise;
-}
-
-/// Gives ids to those that have none, between their neighbours'. Returns false where there are too few
-/// between.
-bool fill_in_ids(std::vector<IdRange>& ids) {
-    std::uint32_t next = 0;
-    for (IdRange& range : ids) {
-        if (range.first == IdRange::unset) range.first = next;
-        if (range.first < next) return false;
-        next = range.first + range.count;
-    }
-    return next < TRIANGLE_MASKED;
-}
-
-/// Makes the ids of the triangles increase from object to object, so that of two triangles at the same
-/// distance the same one is hit whatever has come and gone before. Changes few ids: as many as possible stay,
-/// and there is room before and between them.
-void order_ids(std::vector<IdRange>& ids) {
-    std::vector<bool> stays(ids.size());
-    for (const std::size_t i : longest_rise(ids)) {
-        stays[i] = true;
-    }
-    std::uint64_t sum = 0;
-    for (std::size_t i = 0; i < ids.size(); ++i) {
-        sum += ids[i].count;
-        if (!stays[i]) ids[i].first = IdRange::unset;
-    }
-    if (std::ranges::find(stays, true) != stays.end() && fill_in_ids(ids)) return;
-    const auto room = static_cast<std::uint32_t>((TRIANGLE_MASKED - sum) / (ids.size() + 1));
-    std::uint32_t next = room;
-    for (IdRange& range : ids) {
-        range.first = next;
-        next += range.count + room;
-    }
-}
-
-/// Numbers of the elements of lists that have no other key than the index of an entity.
-class ByEntity {
- public:
-    void add(Entity entity) {
-        if (entity.index >= first_.size()) first_.resize(entity.index + std::size_t{1}, none);
-        next_.push_back(std::exchange(first_[entity.index], static_cast<std::uint32_t>(next_.size())));
-    }
-    /// The first number for which `is_it(number)` holds; nullopt if there is none.
-    template <class IsIt>
-    [[nodiscard]] std::optional<std::uint32_t> find(Entity entity, IsIt is_it) const {
-        if (entity.index >= first_.size()) return std::nullopt;
-        for (std::uint32_t i = first_[entity.index]; i != none; i = next_[i]) {
-            if (is_it(i)) return i;
-        }
-        return std::nullopt;
-    }
-
- private:
-    static constexpr std::uint32_t none = std::numeric_limits<std::uint32_t>::max();
-    std::vector<std::uint32_t> first_;  // by the entity's index
-    std::vector<std::uint32_t> next_;   // by number
-};
+/// In place of the hierarchies of drawables that have none.
+const Bvh empty_bvh{};
 
 }  // namespace
 
-/// Makes `objects` those of the layout's drawables, and keeps what was made for the same ones.
-void SceneHierarchy::take_over(const SceneLayout& layout) {
-    ByEntity known;
-    for (const Identity& identity : identities_) known.add(identity.entity);
-    std::vector<std::uint32_t> now(objects.size(), KeptTop::gone);
-    std::vector<std::unique_ptr<ObjectHierarchy>> taken;
-    std::vector<IdRange> taken_ids;
-    std::vector<Identity> identities;
-    for (const SceneLayout::Drawable& drawable : layout.solids()) {
-        const SceneGeometry::Item& item = layout.geometry.items[drawable.item];
-        identities.push_back({item.entity, drawable.primitive});
-        const auto found =
-            known.find(item.entity, [&](std::uint32_t i) { return identities_[i] == identities.back(); });
-        if (found) {
-            now[*found] = static_cast<std::uint32_t>(taken.size());
-            taken.push_back(std::move(objects[*found]));
-            taken_ids.push_back(ids[*found]);
-        } else {
-            taken.push_back(std::make_unique<ObjectHierarchy>());
-            taken.back()->mesh = item.mesh;
-            taken_ids.push_back(
-                {.count = static_cast<std::uint32_t>(drawable.primitive->indices.size() / 3)});
-        }
-    }
-    top.renumber(now, taken.size());
-    objects = std::move(taken);
-    identities_ = std::move(identities);
-    ids = taken_ids;
-    order_ids(ids);
-    placed_.resize(objects.size());
-    for (std::uint32_t i = 0; i < ids.size(); ++i) {
-        if (ids[i].first != taken_ids[i].first) objects[i]->triangles.uploaded = false;
-        note_place(i);
-    }
-}
-
-void SceneHierarchy::update(const SceneLayout& layout, const ScenePlacement& placement, bool other_layout) {
+void SceneHierarchy::update(const SceneLayout& layout, const ScenePlacement& placement) {
     changed_.clear();
-    std::vector<std::uint32_t> candidates;
-    if (other_layout) {
-        take_over(layout);
-        candidates.resize(objects.size());
-        std::iota(candidates.begin(), candidates.end(), 0U);
-    } else {
-        candidates = moved_solids(layout, placement_, placement);
-    }
+    std::vector<std::uint32_t> candidates = take_over(layout);
+    const std::vector<std::uint32_t> moved = moved_solids(layout, placement_, placement);
+    candidates.insert(candidates.end(), moved.begin(), moved.end());
+    std::ranges::sort(candidates);
+    candidates.erase(std::unique(candidates.begin(), candidates.end()), candidates.end());
     placement_ = placement;
     fit_top(fit_objects(layout, placement, candidates));
-    add_up(layout, other_layout);
+    add_up();
+}
+
+/// Makes `objects` those of the layout's drawables. Returns the numbers of those that were added.
+std::vector<std::uint32_t> SceneHierarchy::take_over(const SceneLayout& layout) {
+    objects.resize(layout.drawables.size());
+    placed_.resize(objects.size(), {.bvh = &empty_bvh});
+    std::vector<std::uint32_t> added;
+    visit_changes(drawables_, layout.drawables, [&](std::size_t i) {
+        const auto object = static_cast<std::uint32_t>(i);
+        const SceneLayout::Drawable& drawable = layout.drawables[i];
+        const bool is_solid = SceneLayout::is_solid(drawable);
+        const bool stays = objects[i] && is_solid && objects[i]->drawn == drawable.drawn &&
+                           objects[i]->entity == layout.geometry.items[drawable.item].entity;
+        if (stays) return;
+        if (objects[i]) remove(object);
+        if (is_solid) added.push_back(object);
+    });
+    std::ranges::sort(added, {}, [&](std::uint32_t object) {
+        const SceneLayout::Drawable& drawable = layout.drawables[object];
+        return key_of(layout.geometry.items[drawable.item].entity, *drawable.drawn);
+    });
+    for (const std::uint32_t object : added) add(object, layout);
+    drawables_ = layout.drawables;
+    return added;
+}
+
+void SceneHierarchy::remove(std::uint32_t object) {
+    top.remove(object);
+    ids.remove(objects[object]->key());
+    freed_.nodes.push_back(objects[object]->nodes);
+    freed_.triangles.push_back(objects[object]->triangles);
+    objects[object] = nullptr;
+    placed_[object] = {.bvh = &empty_bvh};
+    removed_.push_back(object);
+}
+
+void SceneHierarchy::add(std::uint32_t object, const SceneLayout& layout) {
+    const SceneLayout::Drawable& drawable = layout.drawables[object];
+    objects[object] = std::make_unique<ObjectHierarchy>();
+    objects[object]->entity = layout.geometry.items[drawable.item].entity;
+    objects[object]->drawn = drawable.drawn;
+    note_place(object);
+    const auto triangles = static_cast<std::uint32_t>(drawable.primitive().indices.size() / 3);
+    if (ids.insert(objects[object]->key(), triangles)) return;
+    for (std::uint32_t i = 0; i < objects.size(); ++i) {
+        if (!objects[i] || !objects[i]->source.is_made) continue;
+        objects[i]->triangles.uploaded = false;
+        changed_.push_back(i);
+    }
 }
 
 SceneHierarchy::Fitted SceneHierarchy::fit_objects(const SceneLayout& layout, const ScenePlacement& placement,
@@ -193,25 +119,25 @@ SceneHierarchy::Fitted SceneHierarchy::fit_objects(const SceneLayout& layout, co
     for (const std::uint32_t i : candidates) {
         ObjectHierarchy& object = *objects[i];
         const SceneLayout::Drawable& drawable = layout.drawables[i];
-        if (is_made_from(object.source, layout, drawable, placement)) {
-            if (!object.triangles.uploaded) changed_.push_back(i);
-            continue;
-        }
+        if (is_made_from(object.source, layout, drawable, placement)) continue;
         object.source = {.is_made = true,
-                         .material = drawable.material,
                          .mirrored = layout.geometry.items[drawable.item].mirrored,
                          .world = placement.world[drawable.item],
                          .vertices = deformed_vertices(placement.deformed, drawable.item)};
         const std::vector<Triangle> triangles =
             place_triangles(layout, drawable, vertices_of(drawable, placement.deformed), object.source.world);
+        const BufferRange nodes = object.nodes;
         (fit(object, triangles) ? fitted.built : fitted.refitted).push_back(i);
-        object.area = area_of(triangles);
+        if (object.nodes.first != nodes.first) freed_.nodes.push_back(nodes);
+        object.area = static_cast<float>(area_of(triangles));
         // The second texture coordinates follow as triangles of their own.
-        const std::uint32_t records = traces_second_uvs(*drawable.primitive) ? 2 : 1;
+        const std::uint32_t records = traces_second_uvs(drawable.primitive()) ? 2 : 1;
         object.triangles.count = records * static_cast<std::uint32_t>(triangles.size());
         object.nodes.uploaded = object.triangles.uploaded = false;
         changed_.push_back(i);
     }
+    std::ranges::sort(changed_);
+    changed_.erase(std::unique(changed_.begin(), changed_.end()), changed_.end());
     return fitted;
 }
 
@@ -227,22 +153,24 @@ void SceneHierarchy::fit_top(const Fitted& fitted) {
     if (builds || top.is_worn()) top.build(placed_);
 }
 
-void SceneHierarchy::add_up(const SceneLayout& layout, bool all) {
+/// Areas are floats, so that sums of them in doubles are exact, or nearly so: they must not depend on the
+/// numbers that objects happen to have.
+void SceneHierarchy::add_up() {
+    removed_.insert(removed_.end(), changed_.begin(), changed_.end());
+    std::vector<std::size_t> blocks;
+    for (const std::uint32_t i : std::exchange(removed_, {})) blocks.push_back(i / block_size);
+    std::ranges::sort(blocks);
+    blocks.erase(std::unique(blocks.begin(), blocks.end()), blocks.end());
     sums_.resize((objects.size() + block_size - 1) / block_size);
-    for (std::size_t block = 0; all && block < sums_.size(); ++block) add_up_block(layout, block);
-    std::size_t last = sums_.size();
-    for (const std::uint32_t i : changed_) {
-        if (!all && std::exchange(last, i / block_size) != i / block_size) add_up_block(layout, last);
-    }
-}
-
-void SceneHierarchy::add_up_block(const SceneLayout& layout, std::size_t block) {
-    Sums& sums = sums_[block] = {};
-    const std::size_t end = std::min(objects.size(), (block + 1) * block_size);
-    for (std::size_t i = block * block_size; i < end; ++i) {
-        sums.triangles += objects[i]->bvh.order.size();
-        sums.area += objects[i]->area;
-        sums.reflecting += objects[i]->area * static_cast<double>(layout.drawables[i].albedo);
+    for (const std::size_t block : blocks) {
+        Sums& sums = sums_[block] = {};
+        const std::size_t end = std::min(objects.size(), (block + 1) * block_size);
+        for (std::size_t i = block * block_size; i < end; ++i) {
+            if (!objects[i]) continue;
+            sums.triangles += objects[i]->bvh.order.size();
+            sums.area += static_cast<double>(objects[i]->area);
+            sums.reflecting += static_cast<double>(objects[i]->area * objects[i]->drawn->albedo);
+        }
     }
 }
 

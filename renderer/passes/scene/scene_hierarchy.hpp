@@ -9,11 +9,13 @@
 #include <glm/vec3.hpp>
 #include <limits>
 #include <memory>
+#include <utility>
 #include <vector>
 
 #include "engine/bvh/kept_top.hpp"
 #include "renderer/gpu/buffer_ranges.hpp"
-#include "renderer/passes/scene/scene_upload.hpp"
+#include "renderer/passes/scene/scene_layout.hpp"
+#include "renderer/passes/scene/triangle_ids.hpp"
 
 namespace candela {
 
@@ -52,57 +54,51 @@ struct ObjectHierarchy {
     /// What triangles and nodes are made from, besides the primitive.
     struct Source {
         bool is_made = false;
-        std::uint32_t material = 0;
         bool mirrored = false;
         glm::mat4 world{1.0F};
         std::shared_ptr<const DeformedMesh::Vertices> vertices;  ///< null: those of the mesh
     };
-    std::shared_ptr<const Mesh> mesh;  ///< keeps the primitive alive
+    Entity entity;
+    std::shared_ptr<const DrawnPrimitive> drawn;
     Source source;
     Bvh bvh;
     float built_cost = 0.0F;  ///< SAH cost at the last build
-    double area = 0.0;        ///< of the triangles, one side each, m²
+    float area = 0.0F;        ///< of the triangles, one side each, m²
     BufferRange nodes;        ///< wide ones
     BufferRange triangles;
-};
 
-/// The ids of an object's triangles: see gpu::TraceTriangle.
-struct IdRange {
-    static constexpr std::uint32_t unset = std::numeric_limits<std::uint32_t>::max();
-
-    std::uint32_t first = unset;
-    std::uint32_t count = 0;
+    [[nodiscard]] PrimitiveKey key() const { return key_of(entity, *drawn); }
 };
 
 /// The hierarchy over the triangles of all solid drawables, kept from frame to frame: one for each, joined by
 /// a top (engine/bvh/kept_top.hpp). What has moved is refitted, and built again once its SAH cost
-/// exceeds 1.5 times that of the last build. An update for what has moved takes no time for the rest.
+/// exceeds 1.5 times that of the last build. An update takes no time for what has not changed.
 class SceneHierarchy {
  public:
-    /// Brings everything up to date with the scene. `other_layout`: the layout is another than in the last
-    /// call. The ranges of what has changed are not `uploaded` then.
-    void update(const SceneLayout& layout, const ScenePlacement& placement, bool other_layout);
+    /// Brings everything up to date with the scene. The ranges of what has changed are not `uploaded` then.
+    void update(const SceneLayout& layout, const ScenePlacement& placement);
 
-    /// Numbers of the objects that the last update has changed, ascending.
+    /// Numbers of the objects that the last update has changed or added, ascending.
     [[nodiscard]] const std::vector<std::uint32_t>& changed() const { return changed_; }
+    /// The ranges that have no object any more since the last call.
+    struct Freed {
+        std::vector<BufferRange> nodes;
+        std::vector<BufferRange> triangles;
+    };
+    [[nodiscard]] Freed take_freed() { return std::exchange(freed_, {}); }
+
     [[nodiscard]] SceneMetrics metrics() const;
     /// The objects, and where they are in the buffers by the last call of note_place.
     [[nodiscard]] const std::vector<PlacedBvh>& placed() const { return placed_; }
     /// Takes over where the object's ranges are.
     void note_place(std::uint32_t object);
 
-    std::vector<std::unique_ptr<ObjectHierarchy>> objects;  ///< by solid drawable
-    std::vector<IdRange> ids;                               ///< by object
+    std::vector<std::unique_ptr<ObjectHierarchy>> objects;  ///< by drawable; null unless it is solid
+    TriangleIds ids;
     KeptTop top;
 
  private:
-    /// The drawables of two layouts that are the same: one primitive of one entity.
-    struct Identity {
-        Entity entity;
-        const Primitive* primitive;
-        bool operator==(const Identity&) const = default;
-    };
-    /// What a block of objects adds to the metrics. Sums of sums are the same whatever changed before.
+    /// What a block of objects adds to the metrics.
     struct Sums {
         double area = 0.0;
         double reflecting = 0.0;
@@ -115,17 +111,20 @@ class SceneHierarchy {
         std::vector<std::uint32_t> built;
     };
 
-    void take_over(const SceneLayout& layout);
+    [[nodiscard]] std::vector<std::uint32_t> take_over(const SceneLayout& layout);
+    void remove(std::uint32_t object);
+    void add(std::uint32_t object, const SceneLayout& layout);
     [[nodiscard]] Fitted fit_objects(const SceneLayout& layout, const ScenePlacement& placement,
                                      const std::vector<std::uint32_t>& candidates);
     void fit_top(const Fitted& fitted);
-    void add_up(const SceneLayout& layout, bool all);
-    void add_up_block(const SceneLayout& layout, std::size_t block);
+    void add_up();
 
-    std::vector<Identity> identities_;  // by object
-    std::vector<PlacedBvh> placed_;     // by object
-    ScenePlacement placement_;          // in the last update
+    std::vector<PlacedBvh> placed_;                 // by object
+    SharedArray<SceneLayout::Drawable> drawables_;  // in the last update
+    ScenePlacement placement_;                      // in the last update
     std::vector<std::uint32_t> changed_;
+    std::vector<std::uint32_t> removed_;  // since the last call of add_up
+    Freed freed_;
     std::vector<Sums> sums_;  // by block of objects
 };
 

@@ -34,7 +34,7 @@ struct TracedObject {
     }
 
     [[nodiscard]] bool has_hole(const Hit& hit) const {
-        const Material& material = *drawable.primitive->material;
+        const Material& material = *drawable.primitive().material;
         if (material.alpha_mode != AlphaMode::mask) return false;
         const gpu::TraceTriangle t = trace_triangle(scene.layout, drawable, vertices, hit.triangle, world, 0);
         const auto alpha_of = [](std::uint32_t colour) { return static_cast<float>(colour >> 24U) / 255.0F; };

@@ -1,62 +1,94 @@
 #pragma once
 
 #include <cstdint>
+#include <deque>
 #include <unordered_map>
 #include <utility>
 #include <vector>
 
 namespace candela {
 
-/// What was made for objects, found by their addresses, and kept as long as each scene uses it. A thing must
-/// keep its object alive, so that the address stays that of the object.
+/// What was made for objects, found by their addresses, and kept while it is in use. A thing must keep its
+/// object alive, so that the address stays that of the object.
 template <class Object, class Thing>
 class UseCache {
  public:
-    /// Starts another scene: nothing is in use.
-    void begin() {
-        ++round_;
-        used_.clear();
-    }
-
-    /// Returns the number of the object's thing among those in use, in the order of their first use. The
-    /// thing is made by `make()` if there is none.
+    /// Returns the number of the object's thing, which stays the same while it is in use, and counts one more
+    /// use. The thing is made by `make()` if there is none.
     template <class Make>
-    std::uint32_t use(const Object* object, Make make) {
-        auto found = entries_.find(object);
-        if (found == entries_.end()) found = entries_.emplace(object, Entry{make()}).first;
-        Entry& entry = found->second;
-        if (entry.round != round_) {
-            entry.round = round_;
-            entry.number = static_cast<std::uint32_t>(used_.size());
-            used_.push_back(&entry.thing);
+    std::uint32_t take(const Object* object, Make make) {
+        auto found = numbers_.find(object);
+        if (found == numbers_.end()) {
+            Thing thing = make();
+            found = numbers_.emplace(object, new_number()).first;
+            entries_[found->second] = {object, std::move(thing), 0};
+            added_.push_back(found->second);
         }
-        return entry.number;
+        ++entries_[found->second].uses;
+        return found->second;
     }
 
-    /// Ends the list of a scene: forgets the things that it does not use.
-    void drop_unused() {
-        std::erase_if(entries_, [this](const auto& entry) { return entry.second.round != round_; });
+    /// Ends one use. A thing without uses is still there until drop_unused.
+    void release(const Object* object) {
+        const std::uint32_t number = numbers_.at(object);
+        if (--entries_[number].uses == 0) unused_.push_back(number);
     }
 
-    /// The object's thing; null if it has none.
-    [[nodiscard]] const Thing* find(const Object* object) const {
-        const auto found = entries_.find(object);
-        return found == entries_.end() ? nullptr : &found->second.thing;
+    /// Forgets the things that are not in use any more, after `drop(number)` for each.
+    template <class Drop>
+    void drop_unused(Drop drop) {
+        for (const std::uint32_t number : std::exchange(unused_, {})) {
+            Entry& entry = entries_[number];
+            if (entry.uses > 0 || entry.object == nullptr) continue;
+            drop(number);
+            numbers_.erase(entry.object);
+            entry = {};
+            free_.push_back(number);
+        }
     }
 
-    /// The things in use, by number.
-    [[nodiscard]] const std::vector<Thing*>& used() const { return used_; }
-    [[nodiscard]] Thing& operator[](std::uint32_t number) const { return *used_[number]; }
+    /// The numbers of the things that are new since the last call and still there.
+    [[nodiscard]] std::vector<std::uint32_t> take_added() {
+        std::vector<std::uint32_t> added = std::exchange(added_, {});
+        std::erase_if(added, [this](std::uint32_t number) { return entries_[number].object == nullptr; });
+        return added;
+    }
+
+    /// All numbers are smaller.
+    [[nodiscard]] std::uint32_t size() const { return static_cast<std::uint32_t>(entries_.size()); }
+    [[nodiscard]] Thing& operator[](std::uint32_t number) { return entries_[number].thing; }
+    [[nodiscard]] const Thing& operator[](std::uint32_t number) const { return entries_[number].thing; }
+
+    /// Calls `visit(thing)` for all.
+    template <class Visit>
+    void visit(Visit visit) {
+        for (Entry& entry : entries_) {
+            if (entry.object != nullptr) visit(entry.thing);
+        }
+    }
 
  private:
     struct Entry {
-        Thing thing;
-        std::uint64_t round = 0;  // of the last use
-        std::uint32_t number = 0;
+        const Object* object = nullptr;  // null: the number is free
+        Thing thing{};
+        std::uint32_t uses = 0;
     };
-    std::unordered_map<const Object*, Entry> entries_;
-    std::vector<Thing*> used_;
-    std::uint64_t round_ = 0;
+
+    std::uint32_t new_number() {
+        if (free_.empty()) {
+            entries_.emplace_back();
+            return static_cast<std::uint32_t>(entries_.size() - 1);
+        }
+        const std::uint32_t number = free_.back();
+        free_.pop_back();
+        return number;
+    }
+
+    std::unordered_map<const Object*, std::uint32_t> numbers_;
+    std::deque<Entry> entries_;  // by number; things stay where they are
+    std::vector<std::uint32_t> free_;
+    std::vector<std::uint32_t> added_;
+    std::vector<std::uint32_t> unused_;
 };
 
 }  // namespace candela

@@ -41,7 +41,7 @@ std::uint32_t packed_normal(const glm::vec3& normal) {
 
 /// Vertex indices of triangle i of a drawable, counter-clockwise in world space.
 glm::uvec3 corners(const SceneLayout& layout, const SceneLayout::Drawable& drawable, std::uint32_t i) {
-    const auto& indices = drawable.primitive->indices;
+    const auto& indices = drawable.primitive().indices;
     const std::uint32_t first = 3 * i;
     if (layout.geometry.items[drawable.item].mirrored) {
         return {indices[first], indices[first + 2], indices[first + 1]};
@@ -60,7 +60,7 @@ Triangle place_triangle(const SceneLayout& layout, const SceneLayout::Drawable& 
 
 std::vector<Triangle> place_triangles(const SceneLayout& layout, const SceneLayout::Drawable& drawable,
                                       std::span<const Vertex> vertices, const glm::mat4& world) {
-    const auto count = static_cast<std::uint32_t>(drawable.primitive->indices.size() / 3);
+    const auto count = static_cast<std::uint32_t>(drawable.primitive().indices.size() / 3);
     std::vector<Triangle> triangles;
     triangles.reserve(count);
     for (std::uint32_t i = 0; i < count; ++i) {
@@ -85,7 +85,7 @@ bool traces_second_uvs(const Primitive& primitive) {
 
 std::array<glm::vec2, 3> trace_second_uvs(const SceneLayout& layout, const SceneLayout::Drawable& drawable,
                                           std::uint32_t i) {
-    const std::vector<glm::vec2>& uvs = drawable.primitive->second_uvs;
+    const std::vector<glm::vec2>& uvs = drawable.primitive().second_uvs;
     const glm::uvec3 corner = corners(layout, drawable, i);
     return {uvs[corner.x], uvs[corner.y], uvs[corner.z]};
 }
@@ -93,12 +93,12 @@ std::array<glm::vec2, 3> trace_second_uvs(const SceneLayout& layout, const Scene
 gpu::TraceTriangle trace_triangle(const SceneLayout& layout, const SceneLayout::Drawable& drawable,
                                   std::span<const Vertex> vertices, std::uint32_t i, const glm::mat4& world,
                                   std::uint32_t id) {
-    const bool is_masked = drawable.primitive->material->alpha_mode == AlphaMode::mask;
+    const bool is_masked = drawable.primitive().material->alpha_mode == AlphaMode::mask;
     const Triangle triangle = place_triangle(layout, drawable, vertices, i, world);
     const glm::uvec3 corner = corners(layout, drawable, i);
     const glm::mat3 to_world = normal_matrix(world);
     return {.a = triangle.a,
-            .material = drawable.material,
+            .material = drawable.drawn->material,
             .edge_ab = triangle.b - triangle.a,
             .id = id | (is_masked ? TRIANGLE_MASKED : 0U),
             .edge_ac = triangle.c - triangle.a,

@@ -17,7 +17,7 @@ TextureHandle add_emission(FrameGraph& graph, Gpu& gpu, const SceneData& scene, 
         const TextureHandle out = pass.write(radiance, Usage::colour_target);
         pass.run([=, &gpu](Execution& run) {
             draw_surfaces(gpu, run, scene, programs, visible_surfaces_again, {},
-                          [](const auto& group) { return group.material.emits; });
+                          [](const auto& group) { return group.material->emits; });
         });
         return out;
     });

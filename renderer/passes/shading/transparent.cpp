@@ -11,22 +11,23 @@
 namespace candela {
 namespace {
 
-struct SortedGroup {
+struct SortedDraw {
     const SceneLayout::Group* group;
+    std::uint32_t draw;
     float depth;  ///< metres in front of the viewer
 };
 
-std::vector<SortedGroup> back_to_front(const SceneLayout& layout, const ScenePlacement& placement,
-                                       const CameraView& view) {
-    std::vector<SortedGroup> sorted;
-    for (const SceneLayout::Group& group : layout.groups_of(AlphaMode::blend)) {
-        const SceneLayout::Drawable& drawable = layout.drawables[group.first_draw];
+std::vector<SortedDraw> back_to_front(const SceneLayout& layout, const ScenePlacement& placement,
+                                      const CameraView& view) {
+    std::vector<SortedDraw> sorted;
+    layout.visit_blended([&](const SceneLayout::Group& group, std::uint32_t draw) {
+        const SceneLayout::Drawable& drawable = layout.drawables[layout.draws[draw].base_instance];
         const Box& box = bounds_of(drawable, placement.deformed);
         const glm::vec4 middle((box.lower + box.upper) * 0.5F, 1.0F);
         const glm::vec4 centre = view.view_from_world * (placement.world[drawable.item] * middle);
-        sorted.push_back({&group, -centre.z});
-    }
-    std::ranges::stable_sort(sorted, std::greater{}, &SortedGroup::depth);
+        sorted.push_back({&group, draw, -centre.z});
+    });
+    std::ranges::stable_sort(sorted, std::greater{}, &SortedDraw::depth);
     return sorted;
 }
 
@@ -48,13 +49,13 @@ void check_lights(std::size_t lights) {
     }
 }
 
-void draw_blended(Gpu& gpu, const SceneLayout::Group& group) {
-    if (group.material.double_sided) {
+void draw_blended(Gpu& gpu, const SortedDraw& next) {
+    if (next.group->material->double_sided) {
         gl::RasterState backs = covering;
         backs.culling = gl::Culling::front;
-        draw_group(gpu, group, backs);
+        draw_in_group(gpu, *next.group, next.draw, 1, backs);
     }
-    draw_group(gpu, group, covering);
+    draw_in_group(gpu, *next.group, next.draw, 1, covering);
 }
 
 }  // namespace
@@ -80,15 +81,15 @@ TextureHandle add_transparent(FrameGraph& graph, Gpu& gpu, const SceneData& scen
                 : nullptr;
         const TextureHandle out = pass.write(radiance, Usage::colour_target);
         pass.run([=, &gpu](Execution& run) {
-            const std::vector<SortedGroup> sorted =
+            const std::vector<SortedDraw> sorted =
                 back_to_front(run.value(scene.layout), run.value(scene.placement), run.value(view.camera));
             if (sorted.empty()) return;
             check_lights(run.value(lighting.lights.table).entries.size());
             bind_lighting(gpu, lighting);
             bind_meshes(gpu, run, scene);
             program->use(loop_parts(most_lights, most_lights).front());
-            for (const SortedGroup& next : sorted) {
-                draw_blended(gpu, *next.group);
+            for (const SortedDraw& next : sorted) {
+                draw_blended(gpu, next);
             }
         });
         return out;

@@ -45,11 +45,11 @@ void draw_commands(Gpu& gpu, std::size_t first, std::size_t count, const gl::Ras
     multi_draw(gpu.gl(), first, count);
 }
 
-void draw_group(Gpu& gpu, const SceneLayout::Group& group, gl::RasterState state) {
-    group.material.bind(gpu);
+void draw_in_group(Gpu& gpu, const SceneLayout::Group& group, std::size_t first, std::size_t count,
+                   gl::RasterState state) {
+    group.material->bind(gpu);
     state.clockwise_front = group.mirrored;
-    gpu.device().set_raster_state(state);
-    multi_draw(gpu.gl(), group.first_draw, group.draw_count);
+    draw_commands(gpu, first, count, state);
 }
 
 std::vector<std::string> mesh_variant(const SceneData& scene, std::vector<std::string> words) {
@@ -74,12 +74,12 @@ void draw_surfaces(Gpu& gpu, Execution& run, const SceneData& scene, const Surfa
     bind_meshes(gpu, run, scene);
     const gl::Program* used = nullptr;
     for (const SceneLayout::Group& group : run.value(scene.layout).groups) {
-        if (group.material.alpha == AlphaMode::blend || !is_drawn(group)) continue;
+        if (group.material->alpha == AlphaMode::blend || !is_drawn(group)) continue;
         const gl::Program* const program =
-            group.material.alpha == AlphaMode::mask ? programs.masked : programs.opaque;
+            group.material->alpha == AlphaMode::mask ? programs.masked : programs.opaque;
         if (std::exchange(used, program) != program) program->use(uniforms);
-        state.culling = group.material.double_sided ? gl::Culling::off : gl::Culling::back;
-        draw_group(gpu, group, state);
+        state.culling = group.material->double_sided ? gl::Culling::off : gl::Culling::back;
+        draw_in_group(gpu, group, group.first_draw, group.draw_count, state);
     }
 }
 

@@ -22,8 +22,9 @@ void bind_meshes(Gpu& gpu, Execution& run, const SceneData& scene);
 /// Requires bind_meshes; needs no materials.
 void draw_commands(Gpu& gpu, std::size_t first, std::size_t count, const gl::RasterState& state);
 
-/// Draws one group with the bound program. Binds its images; its winding replaces that of `state`.
-void draw_group(Gpu& gpu, const SceneLayout::Group& group, gl::RasterState state);
+/// The same for commands of a group. Binds its images; its winding replaces that of `state`.
+void draw_in_group(Gpu& gpu, const SceneLayout::Group& group, std::size_t first, std::size_t count,
+                   gl::RasterState state);
 
 /// The nearest surfaces, with their depth.
 inline constexpr gl::RasterState nearest_surfaces{.depth_test = gl::DepthTest::nearer};

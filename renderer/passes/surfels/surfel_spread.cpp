@@ -31,20 +31,22 @@ bool has_second_emission(const Material& material) {
 /// deformation came first.
 SceneTriangles triangles_of(const SceneLayout& layout, const PlacementKey& key) {
     SceneTriangles scene;
-    for (const SceneLayout::Drawable& drawable : layout.solids()) {
-        const std::vector<Vertex>& vertices = drawable.primitive->vertices;
+    layout.visit_solids([&](std::uint32_t number) {
+        const SceneLayout::Drawable& drawable = layout.drawables[number];
+        const std::vector<Vertex>& vertices = drawable.primitive().vertices;
         const glm::mat4 shape(key.shapes[drawable.item]);
-        const auto count = static_cast<std::uint32_t>(drawable.primitive->indices.size() / 3);
+        const auto count = static_cast<std::uint32_t>(drawable.primitive().indices.size() / 3);
         for (std::uint32_t i = 0; i < count; ++i) {
             const auto id = static_cast<std::uint32_t>(scene.triangles.size());
             scene.triangles.push_back(trace_triangle(layout, drawable, vertices, i, shape, id));
-            if (!has_second_emission(*drawable.primitive->material)) continue;
+            if (!has_second_emission(*drawable.primitive().material)) continue;
             scene.second_emission[id] = {trace_second_uvs(layout, drawable, i),
-                                         drawable.primitive->material->base_colour_texture};
+                                         drawable.primitive().material->base_colour_texture};
         }
         scene.item_of.insert(scene.item_of.end(), count, drawable.item);
-    }
-    for (const auto& material : layout.materials) {
+    });
+    for (std::size_t i = 0; i < layout.materials.size(); ++i) {
+        const auto& material = layout.materials[i];
         scene.double_sided.push_back(material && material->double_sided);
         scene.emits.push_back(material && emits(*material));
     }
@@ -60,10 +62,11 @@ glm::mat4 world_from_shape(const glm::mat4& world, const glm::mat3& shape) {
 /// Boxes around the solid parts of the items, world space.
 std::vector<Box> item_boxes(const SceneLayout& layout, const ScenePlacement& placement) {
     std::vector<Box> boxes(placement.world.size());
-    for (const SceneLayout::Drawable& drawable : layout.solids()) {
+    layout.visit_solids([&](std::uint32_t number) {
+        const SceneLayout::Drawable& drawable = layout.drawables[number];
         boxes[drawable.item].grow(
             place_box(bounds_of(drawable, placement.deformed), placement.world[drawable.item]));
-    }
+    });
     return boxes;
 }
 
@@ -119,10 +122,12 @@ class Deformer {
  public:
     Deformer(const SceneLayout& layout, const ScenePlacement& placement)
         : layout_(layout), placement_(placement) {
-        for (const SceneLayout::Drawable& drawable : layout.solids()) {
+        layout.visit_solids([&](std::uint32_t number) {
+            solids_.push_back(number);
             first_triangles_.push_back(triangle_count_);
-            triangle_count_ += static_cast<std::uint32_t>(drawable.primitive->indices.size() / 3);
-        }
+            const std::size_t indices = layout.drawables[number].primitive().indices.size();
+            triangle_count_ += static_cast<std::uint32_t>(indices / 3);
+        });
     }
 
     /// Where a point of a triangle is now.
@@ -134,12 +139,12 @@ class Deformer {
     [[nodiscard]] Moved moved(const SurfacePoint& point) const {
         const auto next = std::ranges::upper_bound(first_triangles_, point.triangle);
         const auto index = static_cast<std::size_t>(next - first_triangles_.begin()) - 1;
-        const SceneLayout::Drawable& drawable = layout_.drawables[index];
+        const SceneLayout::Drawable& drawable = layout_.drawables[solids_[index]];
         const std::uint32_t i = point.triangle - first_triangles_[index];
         const auto triangle_of = [&](std::span<const Vertex> vertices) {
             return place_triangle(layout_, drawable, vertices, i, placement_.world[drawable.item]);
         };
-        const Triangle in_mesh = triangle_of(drawable.primitive->vertices);
+        const Triangle in_mesh = triangle_of(drawable.primitive().vertices);
         const Triangle t = triangle_of(vertices_of(drawable, placement_.deformed));
         const glm::vec3 cross = glm::cross(t.b - t.a, t.c - t.a);
         const float size = glm::length(cross);
@@ -169,7 +174,8 @@ class Deformer {
  private:
     const SceneLayout& layout_;
     const ScenePlacement& placement_;
-    std::vector<std::uint32_t> first_triangles_;  // ids, by drawable: see triangles_of
+    std::vector<std::uint32_t> solids_;           // in the order of triangles_of
+    std::vector<std::uint32_t> first_triangles_;  // their ids, in the same order
     std::uint32_t triangle_count_ = 0;
 };
 

@@ -3,7 +3,6 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
-#include <numeric>
 #include <utility>
 
 #include <glm/vec4.hpp>
@@ -40,45 +39,76 @@ InView in_view(const Box& box, const glm::mat4& clip_from_box) {
 }
 
 std::vector<std::uint32_t> SeenObjects::update(const KeptTop& top, std::size_t count,
-                                               const glm::mat4& clip_from_world, bool other_objects) {
-    if (other_objects) seen_.assign(count, false);
-    if (other_objects || topology_ != top.topology()) {
-        states_.assign(top.top().bvh.nodes.size(), InView::outside);
-        leaves_.assign(count, 0);
-        touched_.resize(count);
-        std::iota(touched_.begin(), touched_.end(), 0U);
-    }
-    topology_ = top.topology();
-    if (!top.top().bvh.nodes.empty()) visit(top.top(), 0, InView::partly, clip_from_world);
+                                               const glm::mat4& clip_from_world) {
+    counts_.resize(std::max(count, counts_.size()));
+    seen_.resize(counts_.size());
+    follow(top);
+    const bool same_view = std::exchange(clip_from_world_, clip_from_world) == clip_from_world;
+    if (!top.top().bvh.nodes.empty()) visit(top.top(), 0, InView::partly, same_view);
 
+    std::ranges::sort(touched_);
+    touched_.erase(std::unique(touched_.begin(), touched_.end()), touched_.end());
     std::vector<std::uint32_t> changed;
     for (const std::uint32_t object : std::exchange(touched_, {})) {
-        const bool now = leaves_[object] > 0;
-        if (seen_[object] == now) continue;
+        const bool now = counts_[object] > 0;
+        if (seen_[object] != now) changed.push_back(object);
         seen_[object] = now;
-        changed.push_back(object);
     }
-    std::ranges::sort(changed);
     return changed;
 }
 
-/// `above`: of the node that contains this one.
-void SeenObjects::visit(const TopBvh& top, std::uint32_t node, InView above,
-                        const glm::mat4& clip_from_world) {
-    const BvhNode& box = top.bvh.nodes[node];
-    const InView now = above == InView::partly ? in_view({box.lower, box.upper}, clip_from_world) : above;
-    const InView before = std::exchange(states_[node], now);
-    if (now == before && now != InView::partly) return;
-    if (box.count == 0) {
-        visit(top, box.first, now, clip_from_world);
-        visit(top, box.first + 1, now, clip_from_world);
+/// Takes over what has changed in the top.
+void SeenObjects::follow(const KeptTop& top) {
+    const auto edits = top.edits_since(revision_);
+    revision_ = top.revision();
+    if (!edits) {
+        for (std::uint32_t leaf = 0; leaf < leaves_.size(); ++leaf) set_seen(leaf, 0, false);
+        states_.assign(top.top().bvh.nodes.size(), std::nullopt);
+        leaves_.resize(top.top().leaves.size());
         return;
     }
-    const bool seen = now != InView::outside;
-    if (seen == (before != InView::outside)) return;
-    const std::uint32_t object = top.leaves[top.bvh.order[box.first]].object;
-    leaves_[object] += seen ? 1U : ~0U;
-    touched_.push_back(object);
+    states_.resize(top.top().bvh.nodes.size(), std::nullopt);
+    leaves_.resize(top.top().leaves.size());
+    for (const KeptTop::Edit& edit : *edits) {
+        if (edit.kind == KeptTop::Edit::Kind::node) {
+            forget(top, edit.index);
+        } else {
+            set_seen(edit.index, 0, false);
+        }
+    }
+}
+
+/// The way to the node is then visited, too.
+void SeenObjects::forget(const KeptTop& top, std::uint32_t node) {
+    states_[node] = std::nullopt;
+    for (std::uint32_t above = top.parent_of(node); above != KeptTop::none && states_[above];
+         above = top.parent_of(above)) {
+        states_[above] = std::nullopt;
+    }
+}
+
+void SeenObjects::visit(const TopBvh& top, std::uint32_t node, InView above, bool same_view) {
+    const BvhNode& box = top.bvh.nodes[node];
+    const InView now = above == InView::partly ? in_view({box.lower, box.upper}, clip_from_world_) : above;
+    const std::optional<InView> before = std::exchange(states_[node], now);
+    if (now == before && (same_view || now != InView::partly)) return;
+    if (box.count == 0) {
+        visit(top, box.first, now, same_view);
+        visit(top, box.first + 1, now, same_view);
+        return;
+    }
+    const std::uint32_t leaf = top.bvh.order[box.first];
+    set_seen(leaf, top.leaves[leaf].object, now != InView::outside);
+}
+
+/// `object`: which has the leaf, if it is seen.
+void SeenObjects::set_seen(std::uint32_t leaf, std::uint32_t object, bool is_seen) {
+    Leaf& changed = leaves_[leaf];
+    if (changed.is_seen == is_seen) return;
+    changed.is_seen = is_seen;
+    if (is_seen) changed.object = object;
+    counts_[changed.object] += is_seen ? 1U : ~0U;
+    touched_.push_back(changed.object);
 }
 
 }  // namespace candela

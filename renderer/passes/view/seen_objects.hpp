@@ -2,6 +2,7 @@
 
 #include <cstddef>
 #include <cstdint>
+#include <optional>
 #include <vector>
 
 #include <glm/mat4x4.hpp>
@@ -24,22 +25,35 @@ enum class InView : std::uint8_t {
 /// that is as completely outside or inside the view as before is not looked at again.
 class SeenObjects {
  public:
-    /// `other_objects`: the objects have other numbers than in the last call. `count`: how many there are.
-    /// Returns the numbers of those that have come into view or left it since then, ascending; objects that
-    /// were not there were not seen.
-    std::vector<std::uint32_t> update(const KeptTop& top, std::size_t count, const glm::mat4& clip_from_world,
-                                      bool other_objects);
+    /// `top`: the same in each call. `count`: all objects have smaller numbers. Returns the
+    /// numbers of those that have come into view or left it since the last call, ascending; objects that are
+    /// no longer in the top are not seen.
+    std::vector<std::uint32_t> update(const KeptTop& top, std::size_t count,
+                                      const glm::mat4& clip_from_world);
 
     [[nodiscard]] bool sees(std::uint32_t object) const { return seen_[object]; }
 
  private:
-    void visit(const TopBvh& top, std::uint32_t node, InView above, const glm::mat4& clip_from_world);
+    struct Leaf {
+        std::uint32_t object = 0;
+        bool is_seen = false;
+    };
 
-    std::vector<InView> states_;          // by node of the top
-    std::vector<std::uint32_t> leaves_;   // by object: how many of its leaves are seen
+    void follow(const KeptTop& top);
+    void forget(const KeptTop& top, std::uint32_t node);
+    /// `above`: of the node that contains this one. `same_view`: all that is known is still so.
+    void visit(const TopBvh& top, std::uint32_t node, InView above, bool same_view);
+    void set_seen(std::uint32_t leaf, std::uint32_t object, bool is_seen);
+
+    /// By node of the top; nullopt: unknown. What contains an unknown node is unknown, too.
+    std::vector<std::optional<InView>> states_;
+    std::vector<Leaf> leaves_;            // by leaf of the top
+    std::vector<std::uint32_t> counts_;   // by object: how many of its leaves are seen
     std::vector<bool> seen_;              // by object
-    std::vector<std::uint32_t> touched_;  // objects with leaves that have come or gone
-    std::uint64_t topology_ = 0;          // KeptTop::topology in the last call
+    std::vector<std::uint32_t> touched_;  // objects with leaves that have come into view or left it
+    // Of the last call.
+    std::uint64_t revision_ = 0;  // of the top
+    glm::mat4 clip_from_world_{0.0F};
 };
 
 }  // namespace candela
