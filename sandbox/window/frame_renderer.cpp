@@ -60,6 +60,8 @@ std::unique_ptr<Renderer> FrameRenderer::make_renderer() const {
 void FrameRenderer::begin(FrameRequest request, std::uint64_t number) {
     request_ = std::move(request);
     number_ = number;
+    refines_ = false;
+    settled_ = false;
     errors_.clear();
     if (budget_.budget_ms() != request_->update_budget_ms) budget_ = UpdateBudget(request_->update_budget_ms);
 }
@@ -73,12 +75,24 @@ bool FrameRenderer::needs_compiling() const {
            (request_->other && (!other_ || *request_->other != other_->configuration()));
 }
 
-RenderedFrame FrameRenderer::render(std::size_t slot_index, bool reload) {
+std::optional<RenderedFrame> FrameRenderer::render(std::size_t slot_index, bool reload,
+                                                   const std::function<bool()>& wanted) {
+    // A driver may take work in long before it does it. Where frames take long, it is waited for: only then
+    // is little done for a frame that is given up, and the window, which draws with the same driver, never
+    // waits for more than a pass.
+    constexpr double long_time = 0.04;  // seconds
+    const bool waits = !last_ || last_->seconds > long_time;
+    const FrameOptions options{.wanted = [&] {
+        if (waits) device_.finish();
+        return wanted();
+    }};
     Slot& slot = slots_.at(slot_index);
     RenderedFrame frame;
     try {
         if (reload) reload_error_ = replace_renderers();
-        frame = render_request(slot);
+        std::optional<RenderedFrame> rendered = render_request(slot, options);
+        if (!rendered) return std::nullopt;
+        frame = std::move(*rendered);
     } catch (const std::exception& error) {
         errors_.emplace_back(error.what());
         // The slot may hold a part of a frame, or none.
@@ -86,6 +100,7 @@ RenderedFrame FrameRenderer::render(std::size_t slot_index, bool reload) {
         frame.picture = finished(slot.picture);
         settled_ = true;
     }
+    refines_ = true;
     frame.request = number_;
     frame.errors = errors_;
     if (reload_error_) frame.errors.push_back(*reload_error_);
@@ -112,9 +127,12 @@ std::optional<std::string> FrameRenderer::replace_renderers() {
     return std::nullopt;
 }
 
-RenderedFrame FrameRenderer::render_request(Slot& slot) {
+/// Nothing if the frame is not wanted any more.
+std::optional<RenderedFrame> FrameRenderer::render_request(Slot& slot, const FrameOptions& options) {
+    const Clock::time_point start = Clock::now();
     Configuration wanted = budget_.limited(request_->configuration);
-    if (std::exchange(request_->cut, false)) wanted.frame_budget_ms = 0.0F;
+    if (request_->cut && !refines_) wanted.frame_budget_ms = 0.0F;
+    size_ = refines_ || request_->whole ? request_->size : first_size(request_->size, last_);
     if (wanted != renderer_->configuration() && errors_.empty()) {
         if (needs_compiling()) graph_.reset();
         errors_ = renderer_->configure(wanted);
@@ -124,14 +142,15 @@ RenderedFrame FrameRenderer::render_request(Slot& slot) {
         for (const std::string& error : inspector_->show(request_->inspection)) errors_.push_back(error);
         graph_.reset();
     }
-    draw(*renderer_, slot.picture);
-    draw_second(frame, slot);
+    if (!draw(*renderer_, slot.picture, options) || !draw_second(frame, slot, options)) return std::nullopt;
     if (request_->inspection) inspect(frame, slot.inspection);
     device_.finish();
-    settled_ = renderer_->settled() && (!other_ || other_->settled());
+    settled_ = size_ == request_->size && renderer_->settled() && (!other_ || other_->settled());
     has_rendered_ = true;
+    last_ = FinishedFrame{request_->size, size_, std::chrono::duration<double>(Clock::now() - start).count()};
     frame.picture = finished(slot.picture);
     frame.quality = renderer_->quality();
+    frame.quality.scale *= static_cast<float>(size_.x) / static_cast<float>(request_->size.x);
     frame.report = report();
     frame.times = renderer_->take_frames(true);
     for (const FrameReport& times : frame.times) budget_.learn(times);
@@ -142,20 +161,19 @@ RenderedFrame FrameRenderer::render_request(Slot& slot) {
     return frame;
 }
 
-/// The picture to compare with.
-void FrameRenderer::draw_second(RenderedFrame& frame, Slot& slot) {
+/// The picture to compare with. False if the frame is not wanted any more.
+bool FrameRenderer::draw_second(RenderedFrame& frame, Slot& slot, const FrameOptions& options) {
     if (request_->reference || !request_->other) other_.reset();
     if (request_->reference) {
         draw_reference(slot.other);
     } else if (request_->other) {
-        draw_other(slot.other);
+        if (!draw_other(slot.other, options)) return false;
     } else {
-        return;
+        return true;
     }
     frame.other = finished(slot.other);
-    if (request_->difference && frame.other->size == request_->size) {
-        frame.difference = draw_difference_of(slot);
-    }
+    if (request_->difference && frame.other->size == size_) frame.difference = draw_difference_of(slot);
+    return true;
 }
 
 /// Gives the canvas this size, in pixels.
@@ -164,19 +182,19 @@ void FrameRenderer::fit(tools::Canvas& canvas, glm::uvec2 size) {
         canvas = tools::Canvas(device_, size, Format::rgba8);
 }
 
-void FrameRenderer::draw(Renderer& renderer, tools::Canvas& canvas) {
-    fit(canvas, request_->size);
+bool FrameRenderer::draw(Renderer& renderer, tools::Canvas& canvas, const FrameOptions& options) {
+    fit(canvas, size_);
     const RenderView view{.camera = request_->camera,
                           .target = canvas.target(),
                           .keep = {.radiance = request_->read_radiance, .vpls = request_->read_vpls},
                           .estimate_error = request_->estimate_error};
-    renderer.render(*request_->world, std::span(&view, 1));
+    return renderer.render(*request_->world, std::span(&view, 1), options);
 }
 
-void FrameRenderer::draw_other(tools::Canvas& canvas) {
+bool FrameRenderer::draw_other(tools::Canvas& canvas, const FrameOptions& options) {
     if (!other_) other_ = make_renderer();
     for (const std::string& error : other_->configure(*request_->other)) errors_.push_back(error);
-    draw(*other_, canvas);
+    return draw(*other_, canvas, options);
 }
 
 /// Reading the report back takes time, so this is done a few times per second, and for the last frame.
@@ -191,7 +209,7 @@ std::shared_ptr<const Report> FrameRenderer::report() {
 }
 
 FinishedTexture FrameRenderer::draw_difference_of(Slot& slot) {
-    fit(slot.difference, request_->size);
+    fit(slot.difference, size_);
     draw_difference(*renderer_, slot.picture.colour.name(), slot.other.colour.name(), *request_->difference,
                     slot.difference.target());
     return finished(slot.difference);

@@ -3,6 +3,7 @@
 #include <array>
 #include <cstddef>
 #include <cstdint>
+#include <functional>
 #include <memory>
 #include <optional>
 #include <string>
@@ -15,6 +16,7 @@
 #include "sandbox/candela_private.hpp"
 #include "sandbox/headless/update_budget.hpp"
 #include "sandbox/window/frame_request.hpp"
+#include "sandbox/window/obsolete.hpp"
 
 namespace candela::sandbox {
 
@@ -36,9 +38,15 @@ class FrameRenderer {
     /// Whether the next frame has another graph than the last one, whose shaders may have to be compiled.
     [[nodiscard]] bool needs_compiling() const;
 
+    /// Whether a frame of the request is finished: the next one only makes it better.
+    [[nodiscard]] bool refines() const { return refines_; }
+
     /// The next frame of the request, in the textures of this slot, without RenderedFrame::input. With
     /// `reload` it reads the shaders again. Throws nothing of the renderer's: RenderedFrame::errors has it.
-    [[nodiscard]] RenderedFrame render(std::size_t slot_index, bool reload);
+    /// Asks now and then whether the frame is still wanted. Nothing if it is not: the textures of the slot
+    /// are then those of no frame, and the next call goes on with the work.
+    [[nodiscard]] std::optional<RenderedFrame> render(std::size_t slot_index, bool reload,
+                                                      const std::function<bool()>& wanted);
 
     [[nodiscard]] Renderer& renderer() { return *renderer_; }
 
@@ -52,11 +60,11 @@ class FrameRenderer {
 
     [[nodiscard]] std::unique_ptr<Renderer> make_renderer() const;
     std::optional<std::string> replace_renderers();
-    RenderedFrame render_request(Slot& slot);
+    std::optional<RenderedFrame> render_request(Slot& slot, const FrameOptions& options);
     void fit(tools::Canvas& canvas, glm::uvec2 size);
-    void draw(Renderer& renderer, tools::Canvas& canvas);
-    void draw_second(RenderedFrame& frame, Slot& slot);
-    void draw_other(tools::Canvas& canvas);
+    bool draw(Renderer& renderer, tools::Canvas& canvas, const FrameOptions& options);
+    bool draw_second(RenderedFrame& frame, Slot& slot, const FrameOptions& options);
+    bool draw_other(tools::Canvas& canvas, const FrameOptions& options);
     void draw_reference(tools::Canvas& canvas);
     FinishedTexture draw_difference_of(Slot& slot);
     void inspect(RenderedFrame& frame, tools::Canvas& canvas);
@@ -76,6 +84,9 @@ class FrameRenderer {
     std::vector<std::string> errors_;          ///< of the request
     std::optional<std::string> reload_error_;  ///< of the shaders that were read last
     bool settled_ = true;
+    bool refines_ = false;
+    glm::uvec2 size_{1};  ///< pixels of the present frame
+    std::optional<FinishedFrame> last_;
     bool has_rendered_ = false;
     std::shared_ptr<const Report> report_;
     Clock::time_point report_time_;

@@ -23,7 +23,7 @@ using Clock = std::chrono::steady_clock;
 struct FrameRequest {
     std::shared_ptr<const World> world;  ///< a copy that nobody changes
     Entity camera;
-    glm::uvec2 size{1};  ///< pixels
+    glm::uvec2 size{1};  ///< pixels; the first frame may have fewer: see first_size
     Configuration configuration;
     double update_budget_ms = 0.0;         ///< see UpdateBudget
     std::optional<Configuration> other{};  ///< the same view is rendered with this one, too
@@ -35,6 +35,7 @@ struct FrameRequest {
     bool read_radiance = false;              ///< fills RenderedFrame::radiance
     bool estimate_error = false;             ///< see RenderView::estimate_error
     bool cut = false;  ///< nothing moves on from the request before: no frame of reduced quality comes first
+    bool whole = false;  ///< also the first frame has all pixels, however long it takes
     /// When the oldest input event that this request answers arrived.
     std::optional<Clock::time_point> input{};
     bool operator==(const FrameRequest&) const = default;

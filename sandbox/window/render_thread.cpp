@@ -92,27 +92,47 @@ class RenderThread::Worker {
     }
 
     void step(std::unique_lock<std::mutex>& lock) {
-        std::optional<Clock::time_point> input;
         if (shared_.pending) {
-            input = shared_.pending->input;
+            running_ = *shared_.pending;
+            if (!input_) input_ = running_.input;
             frames_.begin(*std::exchange(shared_.pending, std::nullopt), shared_.submitted);
         }
         const bool reload = std::exchange(shared_.reload, false);
         const std::size_t slot = free_slot();
         enter(reload || frames_.needs_compiling() ? RenderStage::compiling : RenderStage::rendering);
         lock.unlock();
-        RenderedFrame frame = frames_.render(slot, reload);
-        frame.input = input;
+        const Clock::time_point start = Clock::now();
+        std::optional<RenderedFrame> frame =
+            frames_.render(slot, reload, [&] { return is_wanted(Clock::now() - start); });
         lock.lock();
+        enter(RenderStage::idle);
+        if (frame) {
+            given_up_ = 0;
+            frame->input = std::exchange(input_, std::nullopt);
+            finish(std::move(*frame), slot, lock);
+        } else if (!frames_.refines()) {
+            ++given_up_;
+        }
+    }
+
+    void finish(RenderedFrame frame, std::size_t slot, std::unique_lock<std::mutex>& lock) {
         // A frame that is replaced before it was shown hands its input and its times on.
         if (shared_.finished) keep_from(*shared_.finished, frame);
         shared_.finished = std::move(frame);
         shared_.finished_slot = slot;
-        enter(RenderStage::idle);
         shared_.to_window.notify_all();
         lock.unlock();
         notify_();
         lock.lock();
+    }
+
+    /// Whether the frame that is being rendered, since this time, is still worth it.
+    [[nodiscard]] bool is_wanted(Clock::duration age) const {
+        const std::lock_guard lock(shared_.mutex);
+        const bool refines = frames_.refines();
+        if (shared_.stop || (refines && (shared_.paused || shared_.hold_refinement))) return false;
+        return !shared_.pending || !is_obsolete({.refines = refines, .age = age, .given_up = given_up_},
+                                                running_, *shared_.pending);
     }
 
     static void keep_from(RenderedFrame& replaced, RenderedFrame& frame) {
@@ -135,6 +155,9 @@ class RenderThread::Worker {
     Shared& shared_;
     std::function<void()> notify_;
     FrameRenderer frames_;
+    FrameRequest running_;                    // that frames_ renders
+    std::optional<Clock::time_point> input_;  // the oldest that no frame has answered
+    int given_up_ = 0;                        // frames in a row that were to answer a request
 };
 
 RenderThread::RenderThread(std::unique_ptr<ThreadContext> context, RendererOptions options,

@@ -139,6 +139,7 @@ void WindowSession::submit() {
     if (request != requested_) {
         requested_ = request;
         request.cut = cut_;
+        request.whole = options_.frames.has_value();
         request.input = std::exchange(input_, std::nullopt);
         state_.submitted = thread_->submit(std::move(request));
     }

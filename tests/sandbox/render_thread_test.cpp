@@ -9,6 +9,7 @@
 #include "renderer/facade/device_of.hpp"
 #include "renderer/gl/texture.hpp"
 #include "sandbox/scene/scene.hpp"
+#include "sandbox/window/frame_renderer.hpp"
 
 namespace candela::sandbox {
 
@@ -130,6 +131,80 @@ TEST_CASE("a picture is refined until it is settled, but not while the thread is
     RenderedFrame frame = rendering.render(request);
     while (!frame.settled) frame = rendering.thread.wait_for(frame.request);
     CHECK(frame.report->refined == 2);
+}
+
+TEST_CASE("a frame that is given up leaves no trace in the pictures after it") {
+    const std::unique_ptr<HeadlessContext> context = HeadlessContext::create(ContextKind::egl);
+    context->make_current();
+    Scene scene = load_scene(shipped_file("scenes", "cornell.gltf"));
+    FrameRequest request;
+    request.camera = choose_camera(scene.world, std::nullopt, 1.0F);
+    request.world = std::make_shared<const World>(scene.world);
+    request.size = {24, 16};
+    request.configuration.vpls.count = 16;
+    const auto read = [](FrameRenderer& frames, const RenderedFrame& frame) {
+        return gl::read_texels(device_of(frames.renderer()).gl(), frame.picture.texture, frame.picture.size);
+    };
+    FrameRenderer frames(context->get_proc(), {});
+    frames.begin(request, 1);
+    // Each time, one pass more is done before it is given up.
+    int given_up = 0;
+    std::optional<RenderedFrame> frame;
+    for (int passes = 0; !frame; ++passes) {
+        int left = passes;
+        frame = frames.render(0, false, [&] { return left-- > 0; });
+        if (!frame) ++given_up;
+        CHECK(frames.refines() == frame.has_value());
+        CHECK(frames.settled() == frame.has_value());
+    }
+    CHECK(given_up > 3);
+    FrameRenderer others(context->get_proc(), {});
+    others.begin(request, 1);
+    const auto at_once = others.render(0, false, [] { return true; });
+    CHECK(read(frames, *frame) == read(others, at_once.value()));
+}
+
+TEST_CASE("a first picture that had to be quick is followed by the whole one") {
+    Rendering rendering;
+    FrameRequest request = rendering.request();
+    request.size = {1280, 720};
+    const RenderedFrame first = rendering.render(request);
+    CHECK(first.picture.size == glm::uvec2(640, 360));  // no picture before it tells how long one takes
+    CHECK(first.quality.scale == 0.5F);
+    CHECK_FALSE(first.settled);
+    const RenderedFrame second = rendering.thread.wait_for(first.request);
+    CHECK(second.picture.size == request.size);
+    CHECK(second.settled);
+    request.size = {24, 16};
+    static_cast<void>(rendering.render(request));
+    request.size = {1280, 720};
+    request.whole = true;
+    CHECK(rendering.render(request).picture.size == request.size);
+}
+
+TEST_CASE("a frame that only refines is given up when it is held") {
+    Rendering rendering;
+    FrameRequest request = rendering.request();
+    request.size = {400, 300};
+    request.configuration.vpls.count = 512;
+    request.configuration.refinement = {.enabled = true, .frames = 1U << 20U};
+    static_cast<void>(rendering.render(request));
+    // A frame that is in its last pass is finished, so this is tried a few times.
+    int given_up = 0;
+    for (int attempt = 0; attempt < 5; ++attempt) {
+        rendering.thread.hold_refinement(false);
+        static_cast<void>(rendering.thread.wait_for(1));
+        while (rendering.thread.stage() != RenderStage::rendering) std::this_thread::sleep_for(1ms);
+        static_cast<void>(rendering.thread.take());
+        rendering.thread.hold_refinement(true);
+        rendering.thread.run([](Renderer&) {});
+        if (!rendering.thread.take()) ++given_up;
+    }
+    CHECK(given_up > 0);
+    // Refinement goes on with what it has.
+    rendering.thread.hold_refinement(false);
+    RenderedFrame frame = rendering.thread.wait_for(1);
+    while (frame.report->refined < 6) frame = rendering.thread.wait_for(1);
 }
 
 TEST_CASE("within a budget, surfels are traced frame by frame until the picture is settled") {
