@@ -8,7 +8,7 @@
 namespace candela::sandbox {
 
 Layout make_layout(glm::vec2 window, float scale, const LayoutSettings& settings) {
-    constexpr float most_share = 0.45F;
+    constexpr float most_share = 1.0F / 3.0F;
     constexpr float least_width = 170.0F;
     const float status = std::min(settings.status_height, window.y);
     float panel = std::floor(std::min(settings.panel_width * scale, most_share * window.x));

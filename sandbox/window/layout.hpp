@@ -30,7 +30,7 @@ struct LayoutSettings {
     float status_height = 24.0F;  ///< window coordinates
 };
 
-/// The panel takes at most 45 % of the window's width, and is not shown where it would be too narrow to read.
+/// The panel takes at most a third of the window's width, and is not shown where it would be too narrow to read.
 [[nodiscard]] Layout make_layout(glm::vec2 window, float scale, const LayoutSettings& settings);
 
 }  // namespace candela::sandbox

@@ -48,8 +48,13 @@ void tab(const char* name, const char* tip, const F& draw) {
 }
 
 void draw_tabs(SessionState& state, std::vector<Action>& wanted) {
+    if (ImGui::TabItemButton(">", ImGuiTabItemFlags_Trailing)) wanted.push_back(Action::panel);
+    note_control("hide panel", "F1");
     tab("Scene", "cameras, lights, objects, animation", [&] {
-        if (state.document) wanted = draw_scene_panel(*state.document, state.app, state.report());
+        if (!state.document) return;
+        for (const Action action : draw_scene_panel(*state.document, state.app, state.report())) {
+            wanted.push_back(action);
+        }
     });
     tab("Quality", "how a frame is computed",
         [&] { draw_quality_panel(state.app.configuration, state.shown ? state.shown->quality : Quality{}); });
@@ -77,8 +82,8 @@ void draw_scene(SessionState& state, glm::vec2 window) {
 
 std::vector<Action> draw_panel(SessionState& state) {
     const Rectangle& panel = state.layout.panel;
-    if (panel.size.x < 1.0F) return {};
     std::vector<Action> wanted;
+    if (panel.size.x < 1.0F) return wanted;
     ImGui::SetNextWindowPos({panel.corner.x, panel.corner.y});
     ImGui::SetNextWindowSize({panel.size.x, panel.size.y});
     constexpr ImGuiWindowFlags docked = ImGuiWindowFlags_NoTitleBar | ImGuiWindowFlags_NoMove |

@@ -22,18 +22,19 @@ TEST_CASE("the parts fill the window and do not overlap, whatever its size") {
     }
 }
 
-TEST_CASE("the picture keeps more than half of the width") {
+TEST_CASE("the picture keeps two thirds of the width") {
     for (float width = 100.0F; width < 2000.0F; width += 7.0F) {
         const Layout layout = make_layout({width, 500.0F}, 1.0F, {});
-        CHECK(layout.scene.size.x >= 0.55F * width);
+        CHECK(layout.scene.size.x >= 2.0F / 3.0F * width - 1e-3F);
     }
 }
 
 TEST_CASE("a panel that would be too narrow to read, or that is not wanted, is not shown") {
     CHECK(make_layout({300, 500}, 1.0F, {}).panel.size.x == 0.0F);
     CHECK(make_layout({1280, 720}, 1.0F, {.panel = false}).panel.size.x == 0.0F);
-    CHECK(make_layout({640, 360}, 1.0F, {}).panel.size.x == 288.0F);
-    CHECK(make_layout({640, 360}, 2.0F, {}).panel.size.x == 0.0F);
+    CHECK(make_layout({690, 360}, 1.0F, {}).panel.size.x == 230.0F);
+    CHECK(make_layout({690, 360}, 2.0F, {}).panel.size.x == 0.0F);
+    CHECK(make_layout({1280, 720}, 1.0F, {}).panel.size.x == 340.0F);
 }
 
 TEST_CASE("a tiny window still has a picture") {

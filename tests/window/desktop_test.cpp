@@ -117,7 +117,7 @@ Label label_at_scale(float scale) {
                            R"({"refinement": {"enabled": false}, "tone_map": {"exposure_ev": -2}})");
     const auto pixels = [&](int length) { return static_cast<int>(static_cast<float>(length) * scale); };
     App app({.flags = {"--config", resting.path(), "--vpls", "16"},
-             .width = pixels(480),
+             .width = pixels(600),
              .height = pixels(160),
              .panel = true,
              .scale = scale});

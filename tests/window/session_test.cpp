@@ -227,7 +227,7 @@ TEST_CASE("resources are seen instead of the picture, and presets, views and com
     const TextFile still("still.json",
                          R"({"refinement": {"enabled": false}, "tone_map": {"exposure_ev": -2}})");
     App app({.flags = {"--config", still.path(), "--vpls", "16", "--path", "tiled-deferred"},
-             .width = 560,
+             .width = 720,
              .height = 640,  // the graph panel lists all passes
              .panel = true});
     static_cast<void>(app.settled());
