@@ -141,6 +141,9 @@ std::optional<Command> Interaction::handle(const InputEvent& event, glm::vec2 si
             viewer_.flying().stop();
             end_gesture();
             break;
+        case InputEvent::Kind::character:
+        case InputEvent::Kind::focus_gained:
+            break;
     }
     return std::nullopt;
 }

@@ -114,6 +114,21 @@ bool repeats(Action action) {
     }
 }
 
+bool works_while_typing(Action action) {
+    switch (action) {
+        case Action::open_scene:
+        case Action::save_scene:
+        case Action::save_configuration:
+        case Action::screenshot:
+        case Action::full_screen:
+        case Action::panel:
+        case Action::quit:
+            return true;
+        default:
+            return false;
+    }
+}
+
 std::span<const MouseHelp> mouse_help() {
     return mouse;
 }

@@ -68,6 +68,9 @@ struct KeyBinding {
 /// Whether holding the key repeats the action.
 [[nodiscard]] bool repeats(Action action);
 
+/// Whether the key does this also while a text field has the keyboard. Fields use many keys themselves.
+[[nodiscard]] bool works_while_typing(Action action);
+
 /// What the mouse does, for the same help text.
 struct MouseHelp {
     std::string_view buttons;

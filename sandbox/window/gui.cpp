@@ -5,7 +5,9 @@
 
 #include <array>
 #include <cmath>
+#include <cstddef>
 #include <filesystem>
+#include <iterator>
 #include <system_error>
 #include <type_traits>
 
@@ -49,12 +51,15 @@ Gui::Gui(const Window& window) : window_(window) {
     IMGUI_CHECKVERSION();
     ImGui::CreateContext();
     ImGui::GetIO().IniFilename = nullptr;
-    ImGui_ImplGlfw_InitForOpenGL(window.handle(), true);
+    // Without its callbacks: it is told of events when their turn comes.
+    ImGui_ImplGlfw_InitForOpenGL(window.handle(), false);
+    glfwSetCursorEnterCallback(window.handle(), ImGui_ImplGlfw_CursorEnterCallback);
     ImGui_ImplOpenGL3_Init("#version 450");
     set_scale(window.content_scale());
 }
 
 Gui::~Gui() {
+    glfwSetCursorEnterCallback(window_.handle(), nullptr);
     ImGui_ImplOpenGL3_Shutdown();
     ImGui_ImplGlfw_Shutdown();
     ImGui::DestroyContext();
@@ -73,12 +78,60 @@ void Gui::begin_frame() {
     if (const float scale = window_.content_scale(); scale != scale_) set_scale(scale);
     ImGui_ImplOpenGL3_NewFrame();
     ImGui_ImplGlfw_NewFrame();
+    place_pointer();
     ImGui::NewFrame();
+}
+
+/// Older versions of Dear ImGui look where the pointer is now, and not where it was at the last event.
+void Gui::place_pointer() const {
+#if IMGUI_VERSION_NUM < 18700
+    ImGuiIO& io = ImGui::GetIO();
+    if (ImGui::IsMousePosValid(&io.MousePos)) io.MousePos = {pointer_.x, pointer_.y};
+    for (std::size_t button = 0; button < std::size(io.MouseDown); ++button) {
+        io.MouseDown[button] = down_.at(button);
+    }
+#endif
+}
+
+void Gui::tell(const InputEvent& event) {
+    using Kind = InputEvent::Kind;
+    GLFWwindow* const window = window_.handle();
+    pace_.tell(event);
+    pointer_ = event.position;
+    switch (event.kind) {
+        case Kind::press:
+        case Kind::release: {
+            const bool down = event.kind == Kind::press;
+            down_.at(static_cast<std::size_t>(event.code)) = down;
+            return ImGui_ImplGlfw_MouseButtonCallback(window, event.code, down ? GLFW_PRESS : GLFW_RELEASE,
+                                                      event.modifiers);
+        }
+        case Kind::move:
+#if IMGUI_VERSION_NUM >= 18700
+            ImGui_ImplGlfw_CursorPosCallback(window, event.position.x, event.position.y);
+#endif
+            return;
+        case Kind::scroll:
+            return ImGui_ImplGlfw_ScrollCallback(window, 0.0, event.scrolled);
+        case Kind::key:
+            return ImGui_ImplGlfw_KeyCallback(window, event.code, event.scancode,
+                                              event.repeated ? GLFW_REPEAT : GLFW_PRESS, event.modifiers);
+        case Kind::key_release:
+            return ImGui_ImplGlfw_KeyCallback(window, event.code, event.scancode, GLFW_RELEASE,
+                                              event.modifiers);
+        case Kind::character:
+            return ImGui_ImplGlfw_CharCallback(window, static_cast<unsigned>(event.code));
+        case Kind::focus_lost:
+        case Kind::focus_gained:
+            return ImGui_ImplGlfw_WindowFocusCallback(
+                window, event.kind == Kind::focus_gained ? GLFW_TRUE : GLFW_FALSE);
+    }
 }
 
 void Gui::end_frame() {
     ImGui::Render();
     ImGui_ImplOpenGL3_RenderDrawData(ImGui::GetDrawData());
+    pace_.draw();
 }
 
 bool Gui::wants(InputEvent::Kind kind) {
@@ -88,11 +141,13 @@ bool Gui::wants(InputEvent::Kind kind) {
         case InputEvent::Kind::scroll:
             return io.WantCaptureMouse;
         case InputEvent::Kind::key:
+        case InputEvent::Kind::character:
             return io.WantCaptureKeyboard;
         case InputEvent::Kind::move:
         case InputEvent::Kind::release:
         case InputEvent::Kind::key_release:
         case InputEvent::Kind::focus_lost:
+        case InputEvent::Kind::focus_gained:
             break;
     }
     return false;

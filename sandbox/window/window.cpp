@@ -86,6 +86,7 @@ Window& Window::of(GLFWwindow* handle) {
 
 void Window::record(InputEvent event) {
     event.position = pointer_;
+    event.time = std::chrono::steady_clock::now();
     events_.push_back(event);
 }
 
@@ -104,14 +105,18 @@ void Window::listen() {
     glfwSetScrollCallback(handle_, [](GLFWwindow* handle, double /*x*/, double y) {
         of(handle).record({.kind = Kind::scroll, .scrolled = static_cast<float>(y)});
     });
-    glfwSetKeyCallback(handle_, [](GLFWwindow* handle, int key, int /*scancode*/, int action, int modifiers) {
+    glfwSetKeyCallback(handle_, [](GLFWwindow* handle, int key, int scancode, int action, int modifiers) {
         of(handle).record({.kind = action == GLFW_RELEASE ? Kind::key_release : Kind::key,
                            .code = key,
+                           .scancode = scancode,
                            .modifiers = modifiers,
                            .repeated = action == GLFW_REPEAT});
     });
+    glfwSetCharCallback(handle_, [](GLFWwindow* handle, unsigned code_point) {
+        of(handle).record({.kind = Kind::character, .code = static_cast<int>(code_point)});
+    });
     glfwSetWindowFocusCallback(handle_, [](GLFWwindow* handle, int focused) {
-        if (focused == GLFW_FALSE) of(handle).record({.kind = Kind::focus_lost});
+        of(handle).record({.kind = focused == GLFW_FALSE ? Kind::focus_lost : Kind::focus_gained});
     });
     glfwSetDropCallback(handle_, [](GLFWwindow* handle, int count, const char** paths) {
         of(handle).dropped_.insert(of(handle).dropped_.end(), paths, paths + count);

@@ -1,5 +1,6 @@
 #pragma once
 
+#include <chrono>
 #include <cstdint>
 #include <filesystem>
 #include <memory>
@@ -20,15 +21,28 @@ namespace candela::sandbox {
 /// window coordinates: the origin is the upper left corner, and the unit is that of the desktop, which may be
 /// more than one pixel.
 struct InputEvent {
-    /// `press` and `release` are of mouse buttons, `key` and `key_release` of keys. When the window loses the
-    /// focus, the releases of held keys may be missing.
-    enum class Kind : std::uint8_t { press, release, move, scroll, key, key_release, focus_lost };
+    /// `press` and `release` are of mouse buttons, `key` and `key_release` of keys; a key that writes is
+    /// followed by its `character`. When the window loses the focus, the releases of held keys may be
+    /// missing.
+    enum class Kind : std::uint8_t {
+        press,
+        release,
+        move,
+        scroll,
+        key,
+        key_release,
+        character,
+        focus_lost,
+        focus_gained
+    };
     Kind kind = Kind::move;
-    int code = 0;              ///< GLFW_MOUSE_BUTTON_... or GLFW_KEY_...
+    int code = 0;              ///< GLFW_MOUSE_BUTTON_... or GLFW_KEY_..., or the character's code point
+    int scancode = 0;          ///< of the key, by the system
     int modifiers = 0;         ///< GLFW_MOD_...
     glm::vec2 position{0.0F};  ///< of the pointer
     float scrolled = 0.0F;     ///< notches; positive away from the user
     bool repeated = false;     ///< the key was already held
+    std::chrono::steady_clock::time_point time{};  ///< when it arrived
 };
 
 /// A GL context without a window, which shares textures and buffers with that of a window. For another

@@ -24,6 +24,7 @@ void WindowSession::carry_out(const Command& command) {
     if (change_view(command, state_.graph, app, state_.selection)) return;
     switch (command.action) {
         case Action::open_scene:
+            gui_.move_focus();
             return open_panel_.show(
                 {{"recent", recent_files(recent_files_list())}, {"shipped", shipped_scenes()}});
         case Action::save_scene:

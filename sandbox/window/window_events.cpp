@@ -21,8 +21,20 @@
 
 namespace candela::sandbox {
 
+namespace {
+
+bool works_while_typing(const InputEvent& event) {
+    if (event.kind != InputEvent::Kind::key) return false;
+    const KeyBinding* const binding = find_binding(event.code, event.modifiers);
+    return binding != nullptr && works_while_typing(binding->action);
+}
+
+}  // namespace
+
 void WindowSession::take(const InputEvent& event) {
     using Kind = InputEvent::Kind;
+    while (gui_.needs_frame_before(event)) draw();
+    gui_.tell(event);
     if (event.kind == Kind::move) {
         redraw_.pointer_moved();
     } else {
@@ -38,13 +50,13 @@ void WindowSession::take(const InputEvent& event) {
     // A drag is likely to follow: no more work on the picture at rest, which the drag would have to wait for.
     if (event.kind == Kind::press) thread_->hold_refinement(true);
     if (event.kind == Kind::release) thread_->hold_refinement(false);
-    if (Gui::wants(event.kind)) return;
+    if (Gui::wants(event.kind) && !works_while_typing(event)) return;
     Document& document = *state_.document;
     const Tick before = document.scene.world.revision();
     const Rectangle& scene = state_.layout.scene;
     const auto command = document.interaction.handle(event, scene.size, scene.corner);
     if (command) carry_out(*command);
-    if (document.scene.world.revision() != before && !input_) input_ = Clock::now();
+    if (document.scene.world.revision() != before && !input_) input_ = event.time;
 }
 
 void WindowSession::take_news() {

@@ -3,6 +3,7 @@
 #include <GLFW/glfw3.h>
 
 #include <set>
+#include <string_view>
 #include <utility>
 
 #include <doctest/doctest.h>
@@ -41,6 +42,19 @@ TEST_CASE("modifiers must match, locks do not matter") {
     CHECK(find_binding(GLFW_KEY_W, GLFW_MOD_SHIFT)->action == Action::fly);
     CHECK(find_binding(GLFW_KEY_W, GLFW_MOD_CONTROL) == nullptr);
     CHECK(find_binding(GLFW_KEY_Q, GLFW_MOD_CONTROL)->action == Action::quit);
+}
+
+TEST_CASE("keys that work while something is typed write nothing and edit no text") {
+    CHECK(works_while_typing(Action::quit));
+    // What fields do with Ctrl: all, copy, paste, cut, redo, undo.
+    constexpr std::string_view of_fields = "ACVXYZ";
+    for (const KeyBinding& binding : key_bindings()) {
+        if (!works_while_typing(binding.action)) continue;
+        CAPTURE(binding.keys);
+        const bool is_function_key = binding.key >= GLFW_KEY_F1 && binding.key <= GLFW_KEY_F12;
+        CHECK((is_function_key || (binding.modifiers & GLFW_MOD_CONTROL) != 0));
+        CHECK(of_fields.find(static_cast<char>(binding.key)) == std::string_view::npos);
+    }
 }
 }  // TEST_SUITE("key bindings")
 

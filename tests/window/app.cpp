@@ -276,9 +276,19 @@ void App::hold_key(KeySym held, std::string_view what, const std::function<bool(
     await_answer();
 }
 
-void App::type(char letter) {
-    const KeySym symbol = letter == '-' ? XK_minus : letter == '.' ? XK_period : static_cast<KeySym>(letter);
-    press_key(symbol);
+void App::type(std::string_view text) {
+    for (const char letter : text) {
+        const KeySym symbol = letter == '\n' ? XK_Return : static_cast<KeySym>(letter);
+        key(symbol, true);
+        key(symbol, false);
+    }
+}
+
+void App::type_with_control(KeySym symbol) {
+    for (const bool down : {true, false}) {
+        key(XK_Control_L, down);
+        key(symbol, down);
+    }
 }
 
 void App::resize(int width, int height) {
@@ -287,10 +297,7 @@ void App::resize(int width, int height) {
 }
 
 int App::quit() {
-    for (const bool down : {true, false}) {
-        key(XK_Control_L, down);
-        key(XK_q, down);
-    }
+    type_with_control(XK_q);
     return wait_for_end();
 }
 

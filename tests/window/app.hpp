@@ -106,7 +106,10 @@ class App {
     /// Holds a key until there is a record that meets the condition.
     void hold_key(KeySym key, std::string_view what,
                   const std::function<bool(const nlohmann::json&)>& condition);
-    void type(char letter);
+    /// Types without waiting for the app, faster than it draws. Newlines are the key Return.
+    void type(std::string_view text);
+    /// Presses and releases a key with Control, in the same way.
+    void type_with_control(KeySym key);
 
     void resize(int width, int height);
     /// Closes the app by keyboard; returns the exit status.
