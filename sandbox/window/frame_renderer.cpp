@@ -81,9 +81,11 @@ std::optional<RenderedFrame> FrameRenderer::render(std::size_t slot_index, bool 
     // is little done for a frame that is given up, and the window, which draws with the same driver, never
     // waits for more than a pass.
     constexpr double long_time = 0.04;  // seconds
-    const bool waits = !last_ || last_->seconds > long_time;
-    const FrameOptions options{.wanted = [&] {
-        if (waits) device_.finish();
+    const Clock::time_point start = Clock::now();
+    const bool refines_slowly = refines_ && last_ && last_->seconds > long_time;
+    const FrameOptions options{.wanted = [&, start] {
+        const std::chrono::duration<double> age = Clock::now() - start;
+        if (refines_slowly || age.count() > long_time) device_.finish();
         return wanted();
     }};
     Slot& slot = slots_.at(slot_index);
