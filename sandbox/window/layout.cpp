@@ -15,7 +15,9 @@ Layout make_layout(glm::vec2 window, float scale, const LayoutSettings& settings
     if (!settings.panel || panel < least_width * scale) panel = 0.0F;
 
     Layout layout;
-    layout.status = {{0.0F, 0.0F}, {window.x, status}};
+    const float button = std::min(status, window.x);
+    layout.status = {{0.0F, 0.0F}, {window.x - button, status}};
+    layout.panel_button = {{window.x - button, 0.0F}, {button, status}};
     layout.panel = {{window.x - panel, status}, {panel, window.y - status}};
     layout.scene = {{0.0F, status}, glm::max(glm::vec2(window.x - panel, window.y - status), 1.0F)};
     return layout;

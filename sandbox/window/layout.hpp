@@ -15,12 +15,13 @@ struct Rectangle {
     }
 };
 
-/// Where the parts of the window are: the status line at the top, the panel at the right, and the picture in
-/// the rest.
+/// Where the parts of the window are: the status line at the top, with a button at its right end, the panel
+/// at the right, and the picture in the rest.
 struct Layout {
     Rectangle status;
-    Rectangle panel;  ///< width 0: not shown
-    Rectangle scene;  ///< at least 1 × 1
+    Rectangle panel_button;  ///< hides and shows the panel
+    Rectangle panel;         ///< width 0: not shown
+    Rectangle scene;         ///< at least 1 × 1
 };
 
 /// How the window is divided.
@@ -30,7 +31,8 @@ struct LayoutSettings {
     float status_height = 24.0F;  ///< window coordinates
 };
 
-/// The panel takes at most a third of the window's width, and is not shown where it would be too narrow to read.
+/// The panel takes at most a third of the window's width, and is not shown where it would be too narrow to
+/// read.
 [[nodiscard]] Layout make_layout(glm::vec2 window, float scale, const LayoutSettings& settings);
 
 }  // namespace candela::sandbox

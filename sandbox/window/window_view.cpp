@@ -48,8 +48,6 @@ void tab(const char* name, const char* tip, const F& draw) {
 }
 
 void draw_tabs(SessionState& state, std::vector<Action>& wanted) {
-    if (ImGui::TabItemButton(">", ImGuiTabItemFlags_Trailing)) wanted.push_back(Action::panel);
-    note_control("hide panel", "F1");
     tab("Scene", "cameras, lights, objects, animation", [&] {
         if (!state.document) return;
         for (const Action action : draw_scene_panel(*state.document, state.app, state.report())) {
@@ -62,6 +60,25 @@ void draw_tabs(SessionState& state, std::vector<Action>& wanted) {
         [&] { draw_view_panel(state.app, state.report(), state.reference, state.costs.frame().mean_ms); });
     tab("Graph", "what the frame graph does, and what it costs",
         [&] { draw_graph_panel(state.selection, state.graph, state.costs); });
+}
+
+/// At the right end of the status line. Whether it was clicked.
+bool draw_panel_button(bool panel, const Rectangle& at) {
+    ImGui::SetNextWindowPos({at.corner.x, at.corner.y});
+    ImGui::SetNextWindowSize({at.size.x, at.size.y});
+    ImGui::PushStyleVar(ImGuiStyleVar_WindowPadding, {0.0F, 0.0F});
+    ImGui::PushStyleVar(ImGuiStyleVar_WindowBorderSize, 0.0F);
+    ImGui::PushStyleVar(ImGuiStyleVar_WindowMinSize, {1.0F, 1.0F});
+    bool clicked = false;
+    if (ImGui::Begin("panel button", nullptr,
+                     ImGuiWindowFlags_NoDecoration | ImGuiWindowFlags_NoMove |
+                         ImGuiWindowFlags_NoSavedSettings | ImGuiWindowFlags_NoFocusOnAppearing)) {
+        clicked = ImGui::Button(panel ? ">" : "<", {at.size.x, at.size.y});
+        note_control("panel", panel ? "hides the panel: F1" : "shows the panel: F1");
+    }
+    ImGui::End();
+    ImGui::PopStyleVar(3);
+    return clicked;
 }
 
 }  // namespace
@@ -83,6 +100,7 @@ void draw_scene(SessionState& state, glm::vec2 window) {
 std::vector<Action> draw_panel(SessionState& state) {
     const Rectangle& panel = state.layout.panel;
     std::vector<Action> wanted;
+    if (draw_panel_button(state.app.panel, state.layout.panel_button)) wanted.push_back(Action::panel);
     if (panel.size.x < 1.0F) return wanted;
     ImGui::SetNextWindowPos({panel.corner.x, panel.corner.y});
     ImGui::SetNextWindowSize({panel.size.x, panel.size.y});

@@ -12,7 +12,10 @@ TEST_CASE("the parts fill the window and do not overlap, whatever its size") {
             const Layout layout = make_layout(window, scale, {});
             CAPTURE(window.x);
             CAPTURE(scale);
-            CHECK(layout.status.size == glm::vec2(window.x, 24.0F));
+            CHECK(layout.status.size.y == 24.0F);
+            CHECK(layout.panel_button.size.y == 24.0F);
+            CHECK(layout.status.size.x + layout.panel_button.size.x == window.x);
+            CHECK(layout.panel_button.corner == glm::vec2(layout.status.size.x, 0.0F));
             CHECK(layout.scene.corner == glm::vec2(0.0F, 24.0F));
             CHECK(layout.scene.size.x + layout.panel.size.x == window.x);
             CHECK(layout.panel.corner.x == layout.scene.size.x);

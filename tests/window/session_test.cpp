@@ -233,6 +233,10 @@ TEST_CASE("resources are seen instead of the picture, and presets, views and com
     static_cast<void>(app.settled());
     inspect(app);
     compare(app);
+    app.click("panel");
+    app.wait_for("no panel", [](const Json& record) { return record["scene"][2] == 720; });
+    app.click("panel");
+    app.wait_for("the panel", [](const Json& record) { return record["scene"][2] == 480; });
     CHECK(app.quit() == 0);
 }
 }  // TEST_SUITE("session")
