@@ -355,7 +355,7 @@ struct VplRecord {
 // rounding; of surfels also up to the balance of the form factors, and without roulette.
 struct FluxAccount {
     vec3 emitted;  // of surfels: flux of the lights that arrives at the cells, and that the cells emit
-    uint spent;  // of surfels: 1 if too little flux is left for another bounce
+    float pad0 DEFAULT(0.0);
     vec3 absorbed;
     float pad1 DEFAULT(0.0);
     vec3 escaped;
@@ -364,4 +364,9 @@ struct FluxAccount {
     float pad3 DEFAULT(0.0);
     vec3 roulette;  // lost where the path was ended early, minus what higher weights added where it went on
     float pad4 DEFAULT(0.0);
+    // Of surfels, work groups for the next bounce and for adding up after it: none if too little flux is left.
+    uvec3 bounce_groups;
+    uint pad5;
+    uvec3 account_groups;
+    uint pad6;
 };

@@ -7,14 +7,15 @@ void ComputeSteps::run(const gl::Program& program, const Groups& groups, const g
     gpu_.gl().DispatchCompute(groups.x, groups.y, groups.z);
 }
 
-void ComputeSteps::run_indirect(const gl::Program& program, const gl::Uniforms& uniforms) {
+void ComputeSteps::run_indirect(const gl::Program& program, const gl::Uniforms& uniforms, GLintptr offset) {
     begin(program, uniforms);
-    gpu_.gl().DispatchComputeIndirect(0);
+    gpu_.gl().DispatchComputeIndirect(offset);
 }
 
 void ComputeSteps::begin(const gl::Program& program, const gl::Uniforms& uniforms) {
     if (!is_first_) {
-        gpu_.gl().MemoryBarrier(GL_SHADER_STORAGE_BARRIER_BIT | GL_SHADER_IMAGE_ACCESS_BARRIER_BIT);
+        gpu_.gl().MemoryBarrier(GL_SHADER_STORAGE_BARRIER_BIT | GL_SHADER_IMAGE_ACCESS_BARRIER_BIT |
+                                 GL_COMMAND_BARRIER_BIT);
     }
     is_first_ = false;
     program.use(uniforms);

@@ -15,6 +15,7 @@ namespace candela::gpu {
 
 using glm::mat4;
 using glm::uvec2;
+using glm::uvec3;
 using glm::vec2;
 using glm::vec3;
 using glm::vec4;

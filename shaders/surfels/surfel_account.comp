@@ -1,5 +1,5 @@
 // Sums up over all cells where the flux of the lights went: absorbed, escaped, or left after the last bounce; and
-// decides whether another bounce is worth gathering. See theory.md, "Flux account of surfels". One work group in all;
+// decides whether another bounce is worth gathering: the sizes of the dispatches for it are in the account. See theory.md, "Flux account of surfels". One work group in all;
 // an invocation adds up every SURFEL_GROUP-th cell.
 #include "surfels/surfel.glsl"
 
@@ -31,7 +31,6 @@ vec3 left_over(uint id, CellLight cell) {
 }
 
 void main() {
-    if (bounce > 1u && flux[0].spent != 0u) return;
     uint lane = gl_LocalInvocationID.x;
     emitted[lane] = absorbed[lane] = escaped[lane] = truncated[lane] = vec3(0.0);
     is_spent[lane] = true;
@@ -47,13 +46,16 @@ void main() {
     }
     barrier();
     if (lane > 0u) return;
-    FluxAccount account = FluxAccount(vec3(0.0), 1u, vec3(0.0), 0.0, vec3(0.0), 0.0, vec3(0.0), 0.0, vec3(0.0), 0.0);
+    FluxAccount account = FluxAccount(vec3(0.0), 0.0, vec3(0.0), 0.0, vec3(0.0), 0.0, vec3(0.0), 0.0, vec3(0.0), 0.0,
+                                      uvec3(0u, 1u, 1u), 0u, uvec3(0u, 1u, 1u), 0u);
     for (uint i = 0u; i < SURFEL_GROUP; ++i) {
         account.emitted += emitted[i];
         account.absorbed += absorbed[i];
         account.escaped += escaped[i];
         account.truncated += truncated[i];
-        if (!is_spent[i]) account.spent = 0u;
+        if (!is_spent[i]) account.account_groups.x = 1u;
     }
+    uint all_groups = (surfel_count + uint(SURFEL_GROUP) - 1u) / uint(SURFEL_GROUP);
+    account.bounce_groups.x = account.account_groups.x * all_groups;
     flux[0] = account;
 }

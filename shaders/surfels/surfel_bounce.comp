@@ -15,7 +15,6 @@ layout(std430, binding = BINDING_CELL_LIGHT) restrict buffer Cells { CellLight c
 // Two parts in turn, for the previous bounce and this one: rgb is radiosity, a the surfel's scale. A third one for the
 // irradiance of this bounce.
 layout(std430, binding = BINDING_BOUNCE) restrict buffer Bounce { vec4 bounced[]; };
-layout(std430, binding = BINDING_FLUX_ACCOUNT) readonly restrict buffer Flux { FluxAccount flux[]; };
 
 uniform uint bounce;  // 2 or more
 
@@ -53,7 +52,7 @@ vec3 from_column(Surfel from, uint row, uint column, float factor) {
 
 void main() {
     uint id = gl_GlobalInvocationID.x;
-    if (id >= surfel_count || flux[0].spent != 0u) return;
+    if (id >= surfel_count) return;
     Surfel from = surfels[id];
     vec3 sum = vec3(0.0);
     for (uint i = 0u; i < columns / 2u; ++i) {

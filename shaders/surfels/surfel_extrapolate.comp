@@ -8,7 +8,6 @@ layout(local_size_x = SURFEL_GROUP) in;
 
 layout(std430, binding = BINDING_CELL_LIGHT) restrict buffer Cells { CellLight cells[]; };
 layout(std430, binding = BINDING_BOUNCE) restrict buffer Bounce { vec4 bounced[]; };  // see surfel_bounce.comp
-layout(std430, binding = BINDING_FLUX_ACCOUNT) readonly restrict buffer Flux { FluxAccount flux[]; };
 
 uniform uint bounce;  // number of the last bounce that was gathered, at least 3
 
@@ -51,7 +50,6 @@ vec3 bounces_to_add() {
 }
 
 void main() {
-    if (flux[0].spent != 0u) return;
     uint lane = gl_LocalInvocationID.x;
     add_up(lane);
     barrier();

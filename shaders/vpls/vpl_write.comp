@@ -35,7 +35,8 @@ void main() {
     for (uint i = 0u; i < path.vpl_count; ++i) {
         traced_vpls[path.first_vpl + i] = make_vpl(vec3(0.0), VPL_ESCAPED, vec3(0.0), vec3(0.0));
     }
-    FluxAccount account = FluxAccount(vec3(0.0), 0u, vec3(0.0), 0.0, vec3(0.0), 0.0, vec3(0.0), 0.0, vec3(0.0), 0.0);
+    FluxAccount account = FluxAccount(vec3(0.0), 0.0, vec3(0.0), 0.0, vec3(0.0), 0.0, vec3(0.0), 0.0, vec3(0.0), 0.0, uvec3(0u), 0u,
+                                      uvec3(0u), 0u);
     vec3 throughput = vec3(1.0);
     float window = 1.0;
     vec3 reflected = vec3(0.0);  // at the previous bounce

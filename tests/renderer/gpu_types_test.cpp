@@ -186,10 +186,11 @@ const std::vector<Layout>& layouts() {
           MEMBER(VplRecord, pad0), MEMBER(VplRecord, throughput), MEMBER(VplRecord, pad1)}},
         {"FluxAccount",
          sizeof(gpu::FluxAccount),
-         {MEMBER(FluxAccount, emitted), MEMBER(FluxAccount, spent), MEMBER(FluxAccount, absorbed),
+         {MEMBER(FluxAccount, emitted), MEMBER(FluxAccount, pad0), MEMBER(FluxAccount, absorbed),
           MEMBER(FluxAccount, pad1), MEMBER(FluxAccount, escaped), MEMBER(FluxAccount, pad2),
           MEMBER(FluxAccount, truncated), MEMBER(FluxAccount, pad3), MEMBER(FluxAccount, roulette),
-          MEMBER(FluxAccount, pad4)}}};
+          MEMBER(FluxAccount, pad4), MEMBER(FluxAccount, bounce_groups), MEMBER(FluxAccount, pad5),
+          MEMBER(FluxAccount, account_groups), MEMBER(FluxAccount, pad6)}}};
     return all;
 }
 

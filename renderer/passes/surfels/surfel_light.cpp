@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <cstddef>
 #include <optional>
 #include <string>
 #include <vector>
@@ -41,7 +42,8 @@ struct BouncePrograms {
 };
 
 /// Gathers up to bounce `bounces`. Every few bounces, the account finds out how much light is left; once it
-/// is little, the remaining dispatches return at once. If all bounces are wanted, each time before that the
+/// is little, the remaining dispatches have no work groups: where the CPU does their work, dispatches that only
+/// return would take longer than what is gathered. If all bounces are wanted, each time before that the
 /// light of those to come is added as far as the last two tell.
 void gather_bounces(ComputeSteps& steps, const BouncePrograms& programs, std::uint32_t count,
                     std::uint32_t bounces) {
@@ -49,13 +51,18 @@ void gather_bounces(ComputeSteps& steps, const BouncePrograms& programs, std::ui
     const auto uniforms = [&](std::uint32_t bounce) {
         return count_uniforms(count) + gl::Uniforms{{"bounce", bounce}};
     };
+    const auto gather = [&](const gl::Program& program, std::uint32_t bounce) {
+        steps.run_indirect(program, uniforms(bounce), offsetof(gpu::FluxAccount, bounce_groups));
+    };
+    const auto add_up = [&](const gl::Program& program, std::uint32_t bounce) {
+        steps.run_indirect(program, uniforms(bounce), offsetof(gpu::FluxAccount, account_groups));
+    };
     steps.run(programs.account, {}, uniforms(1));
     for (std::uint32_t bounce = 2; bounce <= bounces; ++bounce) {
-        steps.run(bounce == 2 ? programs.first : programs.further, {groups(count, SURFEL_GROUP)},
-                  uniforms(bounce));
+        gather(bounce == 2 ? programs.first : programs.further, bounce);
         if (bounce % bounces_an_account == 0 || bounce == bounces) {
-            if (bounces == all_bounces) steps.run(programs.extrapolate, {}, uniforms(bounce));
-            steps.run(programs.account, {}, uniforms(bounce));
+            if (bounces == all_bounces) add_up(programs.extrapolate, bounce);
+            add_up(programs.account, bounce);
         }
     }
 }
@@ -240,6 +247,7 @@ Vpls add_surfel_light(FrameGraph& graph, Gpu& gpu, const Tracing& tracing, const
             if (lit.emitters) run.reserve(*lit.emitters, counts.emitters);
             if (count == 0) return;
             ComputeSteps steps(gpu);
+            gpu.gl().BindBuffer(GL_DISPATCH_INDIRECT_BUFFER, run.object(out.flux));
             gather_bounces(steps, programs, count, bounces);
             mean_step.run(steps, counts, shown);
             steps.run(
