@@ -8,7 +8,9 @@
 
 #include <fmt/format.h>
 
+#include <candela/graph/execute.hpp>
 #include "engine/graph/details/plan.hpp"
+#include "engine/graph/details/state.hpp"
 #include "engine/json/json.hpp"
 
 namespace candela {
@@ -17,6 +19,11 @@ namespace {
 using detail::Access;
 using detail::none;
 using detail::Resource;
+
+/// `object`: of the plan.
+bool is_described(const Resource& resource, std::uint32_t object) {
+    return resource.history_of == none && object != none;
+}
 
 /// Makes the description of a graph.
 class Describer {
@@ -47,7 +54,7 @@ class Describer {
         index_.assign(declared_.resources.size(), none);
         for (std::uint32_t index = 0; index < declared_.resources.size(); ++index) {
             const Resource& resource = declared_.resources[index];
-            if (resource.history_of == none && plan_.object[index] != none) {
+            if (is_described(resource, plan_.object[index])) {
                 index_[index] = detail::size_of(made_.resources);
                 made_.resources.push_back(describe(resource, index, numbers[plan_.object[index]]));
             }
@@ -240,6 +247,25 @@ Json resource_json(const DescribedResource& resource) {
 
 GraphDescription describe(const CompiledGraph& graph) {
     return Describer(graph).describe();
+}
+
+GraphDescription GraphRuntime::describe() const {
+    if (!graph_) throw GraphError("there is no frame graph");
+    GraphDescription made = candela::describe(*graph_);
+    const std::vector<Resource>& resources = graph_->declared().resources;
+    auto described = made.resources.begin();
+    for (std::size_t index = 0; index < resources.size(); ++index) {
+        const std::uint32_t object = graph_->plan().object[index];
+        if (!is_described(resources[index], object)) continue;
+        const detail::Slot& slot = state_->slots[object];
+        const bool is_import = resources[index].lifetime == Lifetime::imported;
+        if (!slot.view && (slot.filled || !is_import)) {
+            described->texture = slot.storage.texture;
+            described->buffer = slot.storage.buffer;
+        }
+        ++described;
+    }
+    return made;
 }
 
 std::string storage_text(const DescribedResource& resource) {

@@ -169,9 +169,12 @@ TextureHandle FrameGraph::texture(std::string_view name, const TextureDesc& desc
                          {.kind = ResourceKind::texture, .texture = desc}, lifetime)};
 }
 
-ResourceHandle FrameGraph::add_buffer(std::string_view name, const BufferDesc& desc, Lifetime lifetime) {
-    return add_resource(*declared_, declared_->store_name(name),
-                        {.kind = ResourceKind::buffer, .buffer = desc}, lifetime);
+ResourceHandle FrameGraph::add_buffer(std::string_view name, const BufferDesc& desc, std::type_index element,
+                                      Lifetime lifetime) {
+    const ResourceHandle added = add_resource(*declared_, declared_->store_name(name),
+                                              {.kind = ResourceKind::buffer, .buffer = desc}, lifetime);
+    declared_->resources.back().element = element;
+    return added;
 }
 
 ResourceHandle FrameGraph::add_value(std::string_view name, std::type_index type, Lifetime lifetime) {
@@ -216,7 +219,8 @@ std::optional<FoundBuffer> FrameGraph::find_buffer(std::string_view name) const 
     const ResourceHandle found = find(*declared_, name, ResourceKind::buffer);
     if (found == ResourceHandle{}) return std::nullopt;
     const Resource& resource = declared_->resources[found.resource];
-    return FoundBuffer{{found}, resource.storage->buffer.stride, note_of(*declared_, resource)};
+    return FoundBuffer{
+        {found}, resource.storage->buffer.stride, resource.element, note_of(*declared_, resource)};
 }
 
 std::vector<std::string_view> FrameGraph::pass_names() const {

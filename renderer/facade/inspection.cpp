@@ -4,12 +4,16 @@
 #include <fmt/format.h>
 #include <algorithm>
 #include <array>
+#include <cstring>
 #include <glm/common.hpp>
 #include <span>
+#include <stdexcept>
+#include <typeindex>
 #include <utility>
 
 #include <candela/renderer.hpp>
 #include "renderer/facade/gpu_of.hpp"
+#include "renderer/passes/inspect/element_fields.hpp"
 #include "renderer/passes/inspect/inspect.hpp"
 #include "renderer/passes/inspect/inspect_range.hpp"
 #include "shaders/inspect/heat_colours.glsl"
@@ -33,6 +37,7 @@ struct FoundElements {
     ObjectId buffer = 0;
     std::uint32_t stride = 1;
     std::uint64_t count = 0;
+    std::type_index element = typeid(void);
 };
 
 std::string describe(const Picture& picture) {
@@ -56,7 +61,35 @@ std::string_view unit_of(const Picture& picture) {
 }
 
 FoundElements elements_of(const Execution& run, const FoundBuffer& buffer) {
-    return {run.object(buffer.handle), buffer.stride, run.count(buffer.handle)};
+    return {run.object(buffer.handle), buffer.stride, run.count(buffer.handle), buffer.element};
+}
+
+template <class T>
+T number_at(std::span<const std::byte> bytes, std::size_t at) {
+    T number{};
+    std::memcpy(&number, &bytes[at], sizeof number);
+    return number;
+}
+
+std::size_t bytes_of(NumberType type) {
+    return type == NumberType::unorm16 || type == NumberType::snorm16 ? 2 : 4;
+}
+
+/// The number at a byte. The least number of snorm16 means -1, like the next one: OpenGL 4.5, 2.3.5.1.
+double number_at(std::span<const std::byte> bytes, std::size_t at, NumberType type) {
+    switch (type) {
+        case NumberType::uint32:
+            return number_at<std::uint32_t>(bytes, at);
+        case NumberType::int32:
+            return number_at<std::int32_t>(bytes, at);
+        case NumberType::unorm16:
+            return number_at<std::uint16_t>(bytes, at) / 65535.0;
+        case NumberType::snorm16:
+            return std::max(number_at<std::int16_t>(bytes, at) / 32767.0, -1.0);
+        case NumberType::float32:
+            break;
+    }
+    return static_cast<double>(number_at<float>(bytes, at));
 }
 
 ValueRange read_range(const Gpu& gpu, ObjectId ranges) {
@@ -202,10 +235,24 @@ BufferElements ResourceInspector::read_buffer(std::uint64_t first, std::uint64_t
     if (!state_ || !has_run() || state_->elements.buffer == 0) return {};
     const FoundElements& found = state_->elements;
     const std::uint64_t begin = std::min(first, found.count);
-    BufferElements read{.bytes = {}, .stride = found.stride, .count = found.count};
+    BufferElements read{
+        .bytes = {}, .stride = found.stride, .count = found.count, .fields = fields_of(found.element)};
     read.bytes.resize(std::min(most, found.count - begin) * found.stride);
     gl::read_buffer(gpu_of(*renderer_).gl(), found.buffer, read.bytes, begin * found.stride);
     return read;
+}
+
+std::vector<double> numbers_of(const BufferElements& elements, const ElementField& field, std::size_t index) {
+    const std::size_t size = bytes_of(field.type);
+    const std::size_t first = index * elements.stride + field.offset;
+    if (first + field.count * size > elements.bytes.size()) {
+        throw std::out_of_range("the element was not read");
+    }
+    std::vector<double> numbers;
+    for (std::size_t i = 0; i < field.count; ++i) {
+        numbers.push_back(number_at(elements.bytes, first + i * size, field.type));
+    }
+    return numbers;
 }
 
 glm::vec3 heat_colour(float at) {

@@ -506,7 +506,7 @@ void Renderer::State::tone_map(GLuint texture, const Target& target) {
 }
 
 GraphDescription Renderer::State::description() const {
-    return candela::describe(*runtime_.graph());
+    return runtime_.describe();
 }
 
 std::string Renderer::State::describe(GraphFormat format) const {

@@ -2,10 +2,12 @@
 
 #include <doctest/doctest.h>
 
+#include <algorithm>
 #include <cstdint>
 #include <string>
 #include <vector>
 
+#include <candela/graph/describe.hpp>
 #include "tests/engine/graph_fixture.hpp"
 
 TEST_SUITE("graph access") {
@@ -51,6 +53,14 @@ TEST_CASE_FIXTURE(GraphFixture,
     CHECK(room_for(101) == 150);  // grows at least by half
     CHECK(room_for(101) == 150);
     CHECK(room_for(1000) == 1000);
+    const auto described = [](const GraphDescription& all, std::string_view name) {
+        const auto found = std::ranges::find(all.resources, name, &DescribedResource::name);
+        REQUIRE(found != all.resources.end());
+        return *found;
+    };
+    CHECK(described(describe(*runtime.graph()), "vpls").buffer.count == 100);
+    CHECK(described(runtime.describe(), "vpls").buffer.count == 1000);
+    CHECK(described(runtime.describe(), "map").texture.size == glm::uvec2(1000, 1));
     CHECK(room_for(1) == 1000);  // never shrinks
     CHECK(valid == std::vector<bool>{false, false, true, false, false});
     CHECK(backend.objects.size() == 3);

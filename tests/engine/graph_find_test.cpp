@@ -86,6 +86,7 @@ TEST_CASE_FIXTURE(Find, "buffers with the size of their elements") {
     graph.add("sum", [&](Pass& pass) { written = pass.write(buffer, Usage::storage); });
     CHECK(graph.find_buffer("sums")->handle == static_cast<ResourceHandle>(*written));
     CHECK(graph.find_buffer("sums")->stride == sizeof(double));
+    CHECK(graph.find_buffer("sums")->element == typeid(double));
     CHECK_FALSE(graph.find_texture("sums"));
 }
 

@@ -8,6 +8,7 @@
 
 #include "renderer/gl/compiling_program.hpp"
 #include "renderer/gpu/gpu_types.hpp"
+#include "renderer/passes/inspect/element_fields.hpp"
 #include "tests/renderer/context_fixture.hpp"
 
 TEST_SUITE("gpu types") {
@@ -296,6 +297,29 @@ TEST_CASE_FIXTURE(GlFixture, "every struct of types.glsl is compared") {
         ++structs;
     }
     CHECK(structs == layouts().size());
+}
+
+TEST_CASE("fields of inspected elements are where C++ has the members of the same name") {
+    const std::string types = gl::ShaderLibrary(gl::embedded_shaders()).load("types.glsl");
+    for (const Layout& layout : layouts()) {
+        CAPTURE(layout.name);
+        const std::vector<ElementField> fields = fields_of_struct(types, layout.name);
+        std::size_t next = 0;
+        for (const Member& member : layout.members) {
+            if (member.name.starts_with("pad")) continue;
+            CAPTURE(member.name);
+            REQUIRE(next < fields.size());
+            const ElementField& field = fields[next++];
+            CHECK(field.name == member.name.substr(0, member.name.find('[')));
+            CHECK(field.offset == member.offset);
+        }
+        CHECK(next == fields.size());
+    }
+    CHECK(fields_of_struct(types, "NoSuchStruct").empty());
+    const std::vector<ElementField> instance = fields_of(typeid(gpu::Instance));
+    REQUIRE(instance.size() == 2);
+    CHECK(instance[0] == ElementField{"world", NumberType::float32, 12, 0});
+    CHECK(instance[1] == ElementField{"material", NumberType::uint32, 1, 48});
 }
 
 }  // TEST_SUITE("gpu types")

@@ -1,6 +1,7 @@
 // Resources of the running frame graph, shown as pictures.
 
 #include <doctest/doctest.h>
+#include <fmt/format.h>
 
 #include <algorithm>
 #include <array>
@@ -14,6 +15,7 @@
 #include <vector>
 
 #include <candela/extension.hpp>
+#include <candela/graph/describe.hpp>
 #include <candela/graph/execute.hpp>
 #include <candela/inspection.hpp>
 #include "renderer/facade/device_of.hpp"
@@ -365,9 +367,63 @@ TEST_CASE_FIXTURE(InspectionTests, "every resource of every path can be inspecte
             CHECK(read.count > 0);
             CHECK(read.bytes.size() == std::min<std::uint64_t>(read.count, 5) * read.stride);
             CHECK(inspector.read_buffer(read.count, 1).bytes.empty());
+            CHECK_FALSE(read.fields.empty());
         }
         CHECK(inspector.show({}).empty());
     }
+}
+
+TEST_CASE_FIXTURE(InspectionTests, "numbers of vertices are those of the scene's mesh, by their types") {
+    Scene scene = cornell_box();
+    configure(linear_configuration());
+    static_cast<void>(look(scene, {.resource = "vertices"}));
+    const BufferElements read = inspector.read_buffer(0, 4);
+    REQUIRE(read.fields.size() == 5);
+    const auto numbers = [&](std::string_view name) {
+        const auto field = std::ranges::find(read.fields, name, &ElementField::name);
+        REQUIRE(field != read.fields.end());
+        return numbers_of(read, *field, 0);
+    };
+    // A white vertex without a tangent. As floats, the 16-bit numbers of white are no numbers.
+    CHECK(numbers("colour") == std::vector<double>{1.0, 1.0, 1.0, 1.0});
+    CHECK(numbers("tangent") == std::vector<double>(4, 0.0));
+    const std::vector<double> normal = numbers("normal");
+    CHECK(std::abs(std::hypot(normal[0], normal[1], normal[2]) - 1.0) < 1e-6);
+    CHECK_THROWS_AS(static_cast<void>(numbers_of(read, read.fields[0], 4)), std::out_of_range);
+}
+
+TEST_CASE("numbers are read by their type") {
+    BufferElements elements{.bytes = {}, .stride = 8, .count = 1};
+    const std::array<std::uint16_t, 4> halves{0xffff, 0x8000, 0x7fff, 0xffff};
+    elements.bytes.resize(sizeof halves);
+    std::memcpy(elements.bytes.data(), halves.data(), sizeof halves);
+    const auto read = [&](NumberType type, std::uint32_t offset) {
+        return numbers_of(elements, {"", type, 1, offset}, 0).front();
+    };
+    CHECK(read(NumberType::unorm16, 0) == 1.0);
+    CHECK(read(NumberType::snorm16, 2) == -1.0);
+    CHECK(read(NumberType::snorm16, 4) == 1.0);
+    CHECK(read(NumberType::snorm16, 6) == -1.0 / 32767.0);
+    CHECK(read(NumberType::uint32, 4) == 4294934527.0);  // 0xffff7fff
+    CHECK(read(NumberType::int32, 4) == -32769.0);
+    CHECK(std::isnan(read(NumberType::float32, 4)));
+}
+
+TEST_CASE_FIXTURE(InspectionTests, "a description has the sizes of what exists") {
+    Configuration configuration = linear_configuration();
+    configuration.visibility.method = VplVisibility::maps;
+    configure(configuration);
+    const auto maps_of = [&] {
+        const GraphDescription graph = renderer.description();
+        const auto maps = std::ranges::find(graph.resources, "vpl maps", &DescribedResource::name);
+        REQUIRE(maps != graph.resources.end());
+        return maps->texture;
+    };
+    const InspectionResult result = look(cornell_box(), {.resource = "vpl maps"});
+    const TextureDesc maps = maps_of();
+    CHECK(maps.size.x > 1);
+    CHECK(result.description.find(fmt::format("{} × {} texels", maps.size.x, maps.size.y)) !=
+          std::string::npos);
 }
 
 TEST_CASE_FIXTURE(InspectionTests, "the picture is the same with and without, and only what changes runs") {

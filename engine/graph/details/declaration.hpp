@@ -53,6 +53,8 @@ struct Resource {
     std::uint32_t first_part = none;  // the parts of a texture are a linked list
     std::uint32_t next_part = none;
     std::uint32_t note = none;  // see FrameGraph::note
+    // Of a buffer; not a part of its storage, which buffers of several types may share.
+    std::type_index element = typeid(void);
 
     /// Whether it is found again by its name in another graph. A history goes with its resource.
     [[nodiscard]] bool is_kept() const { return lifetime != Lifetime::transient && history_of == none; }

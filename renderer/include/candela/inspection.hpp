@@ -74,12 +74,37 @@ struct InspectionResult {
     std::uint32_t layers = 0;  ///< layers, faces or slices that can be chosen
 };
 
+/// How a number is stored.
+enum class NumberType : std::uint8_t {
+    uint32,
+    int32,
+    float32,
+    unorm16,  ///< 16 bits without a sign; 65535 is 1
+    snorm16   ///< 16 bits with a sign; 32767 is 1
+};
+
+/// One or several numbers in each element of a buffer, one behind the other.
+struct ElementField {
+    std::string name;  ///< as in the shaders; empty if an element is just these numbers
+    NumberType type = NumberType::float32;
+    std::uint32_t count = 1;   ///< numbers
+    std::uint32_t offset = 0;  ///< bytes from the start of the element
+    bool operator==(const ElementField&) const = default;
+};
+
 /// Elements of a buffer.
 struct BufferElements {
     std::vector<std::byte> bytes;  ///< of the elements that were read
     std::uint32_t stride = 1;      ///< bytes of an element
     std::uint64_t count = 0;       ///< elements that the buffer has room for
+    /// What an element holds, by offset, without what only fills gaps. Empty if that is not known: for
+    /// buffers of hosts.
+    std::vector<ElementField> fields{};
 };
+
+/// The numbers of a field of element number `index`. Throws std::out_of_range if the element was not read.
+[[nodiscard]] CANDELA_API std::vector<double> numbers_of(const BufferElements& elements,
+                                                         const ElementField& field, std::size_t index);
 
 /// Shows one resource of a renderer's frame graph at a time, by an extension named "inspect". It does not
 /// change the picture; only a frame budget counts the time of its passes. They run when the resource or what

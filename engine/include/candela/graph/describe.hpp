@@ -35,8 +35,8 @@ struct DescribedResource {
     std::string name;
     ResourceKind kind = ResourceKind::value;
     Lifetime lifetime = Lifetime::transient;
-    TextureDesc texture{};    ///< of textures, as declared
-    BufferDesc buffer{};      ///< of buffers, as declared
+    TextureDesc texture{};    ///< of textures, as declared; or as it is now: GraphRuntime::describe
+    BufferDesc buffer{};      ///< of buffers, likewise
     std::string part_of{};    ///< of a part: the name of the texture; else empty
     std::uint32_t first = 0;  ///< positions of the first and the last pass that uses it
     std::uint32_t last = 0;
@@ -64,7 +64,7 @@ struct GraphDescription {
 /// The same declaration always gives the same description.
 [[nodiscard]] CANDELA_API GraphDescription describe(const CompiledGraph& graph);
 
-/// For example "texture 64x32 rgba16f, array of 3 layers, 2 mips", as declared.
+/// For example "texture 64x32 rgba16f, array of 3 layers, 2 mips".
 [[nodiscard]] CANDELA_API std::string storage_text(const DescribedResource& resource);
 
 /// A listing for readers and golden tests: all but the edges.

@@ -23,6 +23,7 @@
 namespace candela {
 
 class GraphRuntime;
+struct GraphDescription;
 
 namespace detail {
 
@@ -264,6 +265,9 @@ class CANDELA_API GraphRuntime {
     /// content is valid only until another resource uses the same object.
     [[nodiscard]] ObjectId object(ResourceHandle resource) const;
     [[nodiscard]] MemoryUse memory() const;
+    /// As candela::describe of the current graph, but with the sizes that textures and buffers have now:
+    /// those of imports as bound, of others as reserved. GraphError if there is no graph.
+    [[nodiscard]] GraphDescription describe() const;
 
  private:
     friend Execution;

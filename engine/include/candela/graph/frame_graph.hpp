@@ -196,11 +196,12 @@ struct FoundTexture {
     const std::any* note = nullptr;  ///< see FrameGraph::note
 };
 
-/// What FrameGraph::find_buffer returns. Only the size of the elements is known, not their type.
+/// What FrameGraph::find_buffer returns.
 struct FoundBuffer {
     BufferHandle<void> handle;
-    std::uint32_t stride = 1;        ///< bytes from one element to the next
-    const std::any* note = nullptr;  ///< as in FoundTexture
+    std::uint32_t stride = 1;                ///< bytes from one element to the next
+    std::type_index element = typeid(void);  ///< the type of its elements
+    const std::any* note = nullptr;          ///< as in FoundTexture
 };
 
 /// The declaration of a frame: its resources and its passes. Misuse does not throw while declaring; `compile`
@@ -240,7 +241,7 @@ class CANDELA_API FrameGraph {
     template <class T>
     [[nodiscard]] BufferHandle<T> buffer(std::string_view name, std::uint64_t count,
                                          Lifetime lifetime = Lifetime::transient) {
-        return {add_buffer(name, {count, sizeof(T)}, lifetime)};
+        return {add_buffer(name, {count, sizeof(T)}, typeid(T), lifetime)};
     }
 
     /// A CPU value that a pass sets (Execution::set). It is kept from frame to frame.
@@ -293,7 +294,8 @@ class CANDELA_API FrameGraph {
  private:
     friend CompileResult compile(FrameGraph&& graph);
 
-    ResourceHandle add_buffer(std::string_view name, const BufferDesc& desc, Lifetime lifetime);
+    ResourceHandle add_buffer(std::string_view name, const BufferDesc& desc, std::type_index element,
+                              Lifetime lifetime);
     ResourceHandle add_value(std::string_view name, std::type_index type, Lifetime lifetime);
 
     std::unique_ptr<detail::Declaration> declared_;
