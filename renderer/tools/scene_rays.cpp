@@ -8,6 +8,7 @@
 #include <cstdint>
 #include <future>
 #include <iterator>
+#include <limits>
 #include <map>
 #include <set>
 #include <stop_token>
@@ -15,6 +16,8 @@
 #include <vector>
 
 #include <glm/geometric.hpp>
+#include <glm/gtc/quaternion.hpp>
+#include <glm/mat3x3.hpp>
 #include <glm/mat4x4.hpp>
 #include <glm/matrix.hpp>
 
@@ -88,8 +91,13 @@ class CANDELA_PRIVATE SceneRays::State {
     [[nodiscard]] std::optional<SurfaceHit> first_hit(const Ray& ray, std::span<const Entity> ignored,
                                                       float most) const;
     [[nodiscard]] bool blocked(const glm::vec3& from, const glm::vec3& to) const;
+    [[nodiscard]] std::optional<Entity> enclosing(const glm::vec3& point) const;
 
  private:
+    /// Which triangles a ray meets: those whose visible side faces it, or those that are not drawn because
+    /// it is their back.
+    enum class Sides : std::uint8_t { visible, hidden };
+
     /// Triangles of one material in the mesh's local space, few enough to be built without a noticeable wait.
     struct Patch {
         std::vector<Triangle> triangles;
@@ -121,7 +129,8 @@ class CANDELA_PRIVATE SceneRays::State {
     void build_missing(const World& world);
     void place(const World& world);
     template <class Accepts>
-    [[nodiscard]] std::optional<Found> search(const candela::Ray& ray, Accepts&& accepts) const;
+    [[nodiscard]] std::optional<Found> search(const candela::Ray& ray, Accepts&& accepts,
+                                              Sides sides = Sides::visible) const;
 
     std::optional<Tick> meshes_at_;      ///< revision of the instances whose meshes are built or being built
     std::optional<Tick> transforms_at_;  ///< revision of the transforms in `placed_`
@@ -233,10 +242,11 @@ void SceneRays::State::update_and_wait(const World& world) {
     }
 }
 
-/// The nearest triangle whose visible side faces the ray. `accepts(placed)` chooses among the parts.
+/// The nearest triangle that the ray meets with one of these sides. `accepts(placed)` chooses among the
+/// parts.
 template <class Accepts>
-std::optional<SceneRays::State::Found> SceneRays::State::search(const candela::Ray& ray,
-                                                                Accepts&& accepts) const {
+std::optional<SceneRays::State::Found> SceneRays::State::search(const candela::Ray& ray, Accepts&& accepts,
+                                                                Sides sides) const {
     std::optional<Found> nearest;
     candela::Ray rest = ray;
     const auto visit_part = [&](std::uint32_t index) {
@@ -246,9 +256,10 @@ std::optional<SceneRays::State::Found> SceneRays::State::search(const candela::R
         traverse(part.patch->bvh, local, [&](std::uint32_t at) {
             const Triangle& triangle = part.patch->triangles[at];
             const std::optional<Hit> hit = intersect(triangle, at, local);
-            const bool drawn =
+            const bool visible =
                 part.patch->double_sided || glm::dot(front_of(triangle), local.direction) < 0.0F;
-            if (hit && drawn && hit->t < rest.t_max) {
+            const bool meets = visible == (sides == Sides::visible);
+            if (hit && meets && hit->t < rest.t_max) {
                 nearest = Found{hit->t, &part, &triangle};
                 rest.t_max = hit->t;
             }
@@ -280,6 +291,32 @@ bool SceneRays::State::blocked(const glm::vec3& from, const glm::vec3& to) const
     return search({from, to - from, 0.0F, before_end}, accepts).has_value();
 }
 
+std::optional<Entity> SceneRays::State::enclosing(const glm::vec3& point) const {
+    // To the corners and the middles of the faces of a cube, turned: few surfaces have edges just there.
+    const glm::mat3 turn(glm::mat3_cast(glm::angleAxis(0.3F, glm::normalize(glm::vec3(1.0F, 2.0F, 3.0F)))));
+    const auto blocks = [](const Placed& part) { return !part.patch->blends; };
+    std::optional<Entity> nearest;
+    float distance = std::numeric_limits<float>::infinity();
+    for (int x = -1; x <= 1; ++x) {
+        for (int y = -1; y <= 1; ++y) {
+            for (int z = -1; z <= 1; ++z) {
+                if (const int axes = std::abs(x) + std::abs(y) + std::abs(z); axes != 1 && axes != 3)
+                    continue;
+                const glm::vec3 direction = turn * glm::normalize(glm::vec3(x, y, z));
+                const candela::Ray ray{point, direction, 0.0F, std::numeric_limits<float>::infinity()};
+                const auto back = search(ray, blocks, Sides::hidden);
+                if (!back) return std::nullopt;
+                // An object may stand on a floor: then its lower side and the floor are equally near.
+                const auto visible = search(ray, blocks, Sides::visible);
+                if (visible && visible->t < 0.999F * back->t) return std::nullopt;
+                if (back->t < distance) nearest = back->placed->entity;
+                distance = std::min(distance, back->t);
+            }
+        }
+    }
+    return nearest;
+}
+
 SceneRays::SceneRays() : state_(std::make_unique<State>()) {}
 SceneRays::~SceneRays() = default;
 
@@ -302,6 +339,10 @@ std::optional<SurfaceHit> SceneRays::first_hit(const Ray& ray, std::span<const E
 
 bool SceneRays::blocked(const glm::vec3& from, const glm::vec3& to) const {
     return state_->blocked(from, to);
+}
+
+std::optional<Entity> SceneRays::enclosing(const glm::vec3& point) const {
+    return state_->enclosing(point);
 }
 
 }  // namespace candela::tools

@@ -22,7 +22,7 @@ namespace {
 // Relative to the scene's radius.
 constexpr float nudge_step = 0.02F;
 constexpr float surface_gap = 0.03F;   // of a light that moves over surfaces
-constexpr float copy_offset = 0.05F;   // to the right
+constexpr float copy_offset = 0.05F;   // to the side, of a light
 constexpr float light_height = 0.3F;   // of a new light over the surface in the middle of the picture
 constexpr float light_radius = 0.15F;  // of a light that is framed
 
@@ -107,6 +107,12 @@ Place place_for_light(const tools::SceneRays& surfaces, const tools::Ray& middle
     return {hit->point + free * hit->normal, -hit->normal};
 }
 
+/// How far a box reaches along a direction of unit length, metres; 0 if it is empty.
+float width_along(const Box& box, const glm::vec3& direction) {
+    if (box.lower.x > box.upper.x) return 0.0F;
+    return glm::dot(glm::abs(direction), box.upper - box.lower);
+}
+
 }  // namespace
 
 Interaction::Interaction(World& world, Entity camera) : world_(&world), viewer_(world, camera) {}
@@ -153,7 +159,14 @@ void Interaction::step(float seconds, glm::vec2 size, glm::vec2 origin) {
     origin_ = origin;
     if (selected && !is_present(*world_, *selected)) selected.reset();
     surfaces_.update(*world_);
+    find_enclosed();
     viewer_.step(seconds);
+}
+
+void Interaction::find_enclosed() {
+    if (surfaces_.building() || searched_at_ == world_->revision()) return;
+    searched_at_ = world_->revision();
+    enclosed_ = enclosed_lights(*world_, surfaces_);
 }
 
 // The pointer.
@@ -420,10 +433,20 @@ void Interaction::add(const AnyLight& light) {
     selected = add_light(*world_, history_, light, place.position, place.direction, 0.5F * radius);
 }
 
+/// Beside the original as the viewer sees it: to the right, unless only the left is still in the picture.
 void Interaction::copy_selected() {
     if (!selected || !is_present(*world_, *selected)) return;
     const glm::vec3 right = viewer_.orbit().rotation * glm::vec3(1.0F, 0.0F, 0.0F);
-    selected = duplicate(*world_, history_, *selected, copy_offset * viewer_.scene_radius() * right);
+    const float width = width_along(box_of(*world_, family_of(*world_, *selected)), right);
+    constexpr float with_gap = 1.1F;
+    const float offset = width > 0.0F ? with_gap * width : copy_offset * viewer_.scene_radius();
+    const auto is_seen = [&](const glm::vec3& centre) {
+        const std::optional<glm::vec2> at = project(viewport(), centre);
+        return at && viewport().contains(*at);
+    };
+    const glm::vec3 centre = centre_of(*selected);
+    const bool left = !is_seen(centre + offset * right) && is_seen(centre - offset * right);
+    selected = duplicate(*world_, history_, *selected, (left ? -offset : offset) * right);
 }
 
 void Interaction::remove_selected() {

@@ -11,6 +11,7 @@
 #include <candela/ecs/world.hpp>
 #include <candela/tools/scene_rays.hpp>
 #include "sandbox/editing/drag.hpp"
+#include "sandbox/editing/enclosed_lights.hpp"
 #include "sandbox/editing/gizmo.hpp"
 #include "sandbox/editing/history.hpp"
 #include "sandbox/editing/key_bindings.hpp"
@@ -70,6 +71,8 @@ class Interaction {
     [[nodiscard]] History& history() { return history_; }
     [[nodiscard]] const History& history() const { return history_; }
     [[nodiscard]] const tools::SceneRays& surfaces() const { return surfaces_; }
+    /// The lights inside closed objects, at the last step.
+    [[nodiscard]] const std::vector<EnclosedLight>& enclosed() const { return enclosed_; }
     /// The entity that is being dragged.
     [[nodiscard]] std::optional<Entity> dragged() const;
     /// Waits until clicks find all surfaces.
@@ -98,6 +101,7 @@ class Interaction {
         bool moved = false;
     };
 
+    void find_enclosed();
     void press(const InputEvent& event, const Viewport& viewport);
     void press_left(const Viewport& viewport);
     void release(const InputEvent& event, const Viewport& viewport);
@@ -130,6 +134,8 @@ class Interaction {
     Viewer viewer_;
     History history_;
     tools::SceneRays surfaces_;
+    std::vector<EnclosedLight> enclosed_;
+    std::optional<Tick> searched_at_;  ///< the world's revision when `enclosed_` was found
     glm::vec2 size_{1.0F};
     glm::vec2 origin_{0.0F};
     glm::vec2 pointer_{0.0F};

@@ -1,5 +1,6 @@
 #include "sandbox/panels/controls.hpp"
 
+#include <algorithm>
 #include <utility>
 
 #include <fmt/format.h>
@@ -22,6 +23,28 @@ std::string label_beside(const char* label, float width = ImGui::CalcItemWidth()
     return fmt::format("##{}", label);
 }
 
+void note_place(std::string_view label) {
+    if (!ImGui::IsItemVisible()) return;
+    const ImVec2 from = ImGui::GetItemRectMin();
+    const ImVec2 to = ImGui::GetItemRectMax();
+    const std::string_view shown = label.substr(0, label.find("##"));
+    places()[std::string(shown)] = {{from.x, from.y}, {to.x - from.x, to.y - from.y}};
+}
+
+/// In lines of at most this width.
+void draw_tip(const char* tip, float width) {
+    ImGui::BeginTooltip();
+    ImGui::PushTextWrapPos(width);
+    ImGui::TextUnformatted(tip);
+    ImGui::PopTextWrapPos();
+    ImGui::EndTooltip();
+}
+
+float tip_width() {
+    constexpr float letters = 24.0F;  // letters' heights
+    return letters * ImGui::GetFontSize();
+}
+
 }  // namespace
 
 ControlPlaces take_control_places() {
@@ -29,20 +52,19 @@ ControlPlaces take_control_places() {
 }
 
 void note_control(std::string_view label, const char* tip) {
-    if (ImGui::IsItemVisible()) {
-        const ImVec2 from = ImGui::GetItemRectMin();
-        const ImVec2 to = ImGui::GetItemRectMax();
-        const std::string_view shown = label.substr(0, label.find("##"));
-        places()[std::string(shown)] = {{from.x, from.y}, {to.x - from.x, to.y - from.y}};
-    }
-    if (tip != nullptr && ImGui::IsItemHovered()) {
-        constexpr float lines_of = 24.0F;  // letters' heights
-        ImGui::BeginTooltip();
-        ImGui::PushTextWrapPos(ImGui::GetFontSize() * lines_of);
-        ImGui::TextUnformatted(tip);
-        ImGui::PopTextWrapPos();
-        ImGui::EndTooltip();
-    }
+    note_place(label);
+    if (tip != nullptr && ImGui::IsItemHovered()) draw_tip(tip, tip_width());
+}
+
+bool begin_tab(const char* label, const char* tip) {
+    const bool open = ImGui::BeginTabItem(label);
+    note_place(label);
+    if (!ImGui::IsItemHovered()) return open;
+    const float edge = ImGui::GetWindowPos().x;
+    const float gap = ImGui::GetStyle().WindowPadding.x;
+    ImGui::SetNextWindowPos({edge, ImGui::GetItemRectMin().y}, ImGuiCond_Always, {1.0F, 0.0F});
+    draw_tip(tip, std::min(tip_width(), std::max(edge - 4.0F * gap, 1.0F)));
+    return open;
 }
 
 void text(std::string_view line) {

@@ -39,6 +39,9 @@ bool slide(const char* label, int& value, int least, int most, const char* tip);
 bool colour(const char* label, glm::vec3& value, const char* tip);
 /// A part of the panel that can be folded.
 bool header(const char* label, bool open);
+/// A tab of a tab bar, whose tooltip stands beside the window: below the tab it would cover what the tab
+/// shows. Returns whether it is open; ImGui::EndTabItem must follow then.
+[[nodiscard]] bool begin_tab(const char* label, const char* tip);
 
 /// Puts a button with this label beside the last control, unless the panel ends there.
 void same_line_if_it_fits(const std::string& label);

@@ -41,11 +41,12 @@ const PassCost* cost_of(const PassCosts& costs, const std::string& pass) {
     return found == costs.passes().end() ? nullptr : &*found;
 }
 
-void list_resource(const DescribedResource& resource, std::string_view verb,
+void list_resource(const GraphDescription& graph, std::size_t index, std::string_view verb,
                    std::optional<std::string>& chosen) {
+    const DescribedResource& resource = graph.resources[index];
     if (is_of_inspection(resource.name)) return;
     const std::string label = fmt::format("{} {}", verb, resource.name);
-    if (resource.kind == ResourceKind::value) {
+    if (!can_be_shown(graph, index)) {
         ImGui::TextDisabled("%s", label.c_str());
     } else if (ImGui::Selectable(label.c_str(), chosen == resource.name)) {
         if (chosen == resource.name) {
@@ -66,8 +67,7 @@ void list_resources_of(GraphSelection& selection, const GraphDescription& graph)
     for (const bool write : {false, true}) {
         for (const DescribedAccess& access : pass->accesses) {
             if (access.write == write && !access.history) {
-                list_resource(graph.resources[access.resource], write ? "writes" : "reads",
-                              selection.resource);
+                list_resource(graph, access.resource, write ? "writes" : "reads", selection.resource);
             }
         }
     }
@@ -137,6 +137,20 @@ bool is_of_inspection(std::string_view name) {
     return name.starts_with("inspect");
 }
 
+bool can_be_shown(const GraphDescription& graph, std::size_t resource) {
+    const DescribedResource& described = graph.resources[resource];
+    if (described.kind == ResourceKind::value || described.lifetime == Lifetime::imported ||
+        is_of_inspection(described.name)) {
+        return false;
+    }
+    return std::ranges::none_of(graph.passes, [&](const DescribedPass& pass) {
+        const bool is_last = pass.name.starts_with("exposure") || pass.name.starts_with("tone-map");
+        return is_last && std::ranges::any_of(pass.accesses, [&](const DescribedAccess& access) {
+                   return access.write && access.resource == resource;
+               });
+    });
+}
+
 void draw_graph_panel(GraphSelection& selection, const GraphDescription& graph, const PassCosts& costs) {
     const PassCost* plotted = selection.pass ? cost_of(costs, *selection.pass) : nullptr;
     draw_plot(plotted != nullptr ? *plotted : costs.frame());
@@ -162,7 +176,9 @@ void draw_graph_panel(GraphSelection& selection, const GraphDescription& graph, 
     draw_arcs(graph, anchors, space, focus);
 
     if (!header("all resources", false)) return;
-    for (const DescribedResource& resource : graph.resources) list_resource(resource, "", selection.resource);
+    for (std::size_t i = 0; i < graph.resources.size(); ++i) {
+        list_resource(graph, i, "", selection.resource);
+    }
 }
 
 }  // namespace candela::sandbox

@@ -1,5 +1,6 @@
 #pragma once
 
+#include <cstddef>
 #include <optional>
 #include <string>
 #include <string_view>
@@ -19,6 +20,10 @@ struct GraphSelection {
 
 /// Whether a pass or a resource with this name serves the view of resources itself, which is not drawn.
 [[nodiscard]] bool is_of_inspection(std::string_view name);
+
+/// Whether a resource of the graph can be shown instead of the picture: a texture or a buffer that a pass has
+/// written before those that end the frame, the choice of the exposure and the tone map.
+[[nodiscard]] bool can_be_shown(const GraphDescription& graph, std::size_t resource);
 
 /// Draws the frame graph: the passes in the order in which they run, one per line, coloured by what they
 /// cost, with arcs from the passes whose results they need. A click on a pass lists its resources; a click on

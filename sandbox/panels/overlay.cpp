@@ -5,6 +5,8 @@
 #include <cmath>
 #include <utility>
 
+#include <fmt/format.h>
+
 #include "sandbox/panels/controls.hpp"
 
 namespace candela::sandbox {
@@ -44,6 +46,31 @@ void draw_label(ImDrawList& list, ImVec2 at, const std::string& words) {
 constexpr ImGuiWindowFlags floating = ImGuiWindowFlags_NoDecoration | ImGuiWindowFlags_NoMove |
                                       ImGuiWindowFlags_NoSavedSettings | ImGuiWindowFlags_NoFocusOnAppearing |
                                       ImGuiWindowFlags_NoNav | ImGuiWindowFlags_AlwaysAutoResize;
+
+/// Draws the line between the two sides.
+void draw_line_to_drag(Comparison& comparison, const Rectangle& scene) {
+    const float grip = 0.5F * ImGui::GetFontSize();
+    const float x = scene.corner.x + comparison.divider * scene.size.x;
+    ImGui::SetNextWindowPos({x - grip, scene.corner.y});
+    ImGui::SetNextWindowSize({2.0F * grip, scene.size.y});
+    ImGui::PushStyleVar(ImGuiStyleVar_WindowPadding, {0.0F, 0.0F});
+    ImGui::PushStyleVar(ImGuiStyleVar_WindowMinSize, {1.0F, 1.0F});
+    if (ImGui::Begin("comparison", nullptr,
+                     (floating & ~ImGuiWindowFlags_AlwaysAutoResize) | ImGuiWindowFlags_NoBackground)) {
+        ImGui::InvisibleButton("dividing line", {2.0F * grip, scene.size.y});
+        if (ImGui::IsItemActive()) {
+            comparison.divider =
+                std::clamp((ImGui::GetIO().MousePos.x - scene.corner.x) / scene.size.x, 0.0F, 1.0F);
+        }
+        if (ImGui::IsItemHovered()) ImGui::SetMouseCursor(ImGuiMouseCursor_ResizeEW);
+        note_control("dividing line", "A left, B right");
+    }
+    ImGui::End();
+    ImGui::PopStyleVar(2);
+    ImDrawList& list = *ImGui::GetBackgroundDrawList();
+    list.AddLine({x, scene.corner.y}, {x, scene.corner.y + scene.size.y}, dark, 4.0F);
+    list.AddLine({x, scene.corner.y}, {x, scene.corner.y + scene.size.y}, IM_COL32_WHITE, 1.5F);
+}
 
 }  // namespace
 
@@ -93,31 +120,27 @@ void draw_gizmo(const Gizmo& gizmo, std::optional<std::size_t> active) {
     }
 }
 
-void draw_divider(Comparison& comparison, const Rectangle& scene) {
-    if (comparison.mode != CompareMode::divider) return;
-    const float grip = 0.5F * ImGui::GetFontSize();
-    const float x = scene.corner.x + comparison.divider * scene.size.x;
-    ImGui::SetNextWindowPos({x - grip, scene.corner.y});
-    ImGui::SetNextWindowSize({2.0F * grip, scene.size.y});
-    ImGui::PushStyleVar(ImGuiStyleVar_WindowPadding, {0.0F, 0.0F});
-    ImGui::PushStyleVar(ImGuiStyleVar_WindowMinSize, {1.0F, 1.0F});
-    if (ImGui::Begin("comparison", nullptr,
-                     (floating & ~ImGuiWindowFlags_AlwaysAutoResize) | ImGuiWindowFlags_NoBackground)) {
-        ImGui::InvisibleButton("dividing line", {2.0F * grip, scene.size.y});
-        if (ImGui::IsItemActive()) {
-            comparison.divider =
-                std::clamp((ImGui::GetIO().MousePos.x - scene.corner.x) / scene.size.x, 0.0F, 1.0F);
-        }
-        if (ImGui::IsItemHovered()) ImGui::SetMouseCursor(ImGuiMouseCursor_ResizeEW);
-        note_control("dividing line", "A left, B right");
-    }
-    ImGui::End();
-    ImGui::PopStyleVar(2);
+void draw_comparison(Comparison& comparison, const SideLabels& labels, const Rectangle& scene) {
+    const float gap = 0.7F * ImGui::GetFontSize();
     ImDrawList& list = *ImGui::GetBackgroundDrawList();
-    list.AddLine({x, scene.corner.y}, {x, scene.corner.y + scene.size.y}, dark, 4.0F);
-    list.AddLine({x, scene.corner.y}, {x, scene.corner.y + scene.size.y}, IM_COL32_WHITE, 1.5F);
-    draw_label(list, {x - 2.0F * ImGui::GetFontSize(), scene.corner.y + grip}, "A");
-    draw_label(list, {x + 1.4F * ImGui::GetFontSize(), scene.corner.y + grip}, "B");
+    const ImVec2 corner(scene.corner.x, scene.corner.y);
+    const ImVec2 end(scene.corner.x + scene.size.x, scene.corner.y + scene.size.y);
+    if (comparison.mode == CompareMode::difference) {
+        const std::string words = fmt::format("|A - B| · {:.3g}\n{}\n{}",
+                                              static_cast<double>(comparison.factor), labels.a, labels.b);
+        return draw_label(list, {corner.x + gap, corner.y + gap}, words);
+    }
+    if (comparison.mode != CompareMode::divider) return;
+    draw_line_to_drag(comparison, scene);
+    const float x = corner.x + comparison.divider * scene.size.x;
+    // Neither reaches into the other's side.
+    list.PushClipRect(corner, {x, end.y}, true);
+    const float a_width = ImGui::CalcTextSize(labels.a.c_str()).x;
+    draw_label(list, {std::max(x - gap - a_width, corner.x + gap), corner.y + gap}, labels.a);
+    list.PopClipRect();
+    list.PushClipRect({x, corner.y}, end, true);
+    draw_label(list, {x + gap, corner.y + gap}, labels.b);
+    list.PopClipRect();
 }
 
 void draw_messages(const std::vector<std::string>& errors, const std::string& notice,

@@ -6,6 +6,7 @@
 
 #include "sandbox/editing/gizmo.hpp"
 #include "sandbox/editing/light_labels.hpp"
+#include "sandbox/panels/side_labels.hpp"
 #include "sandbox/window/app_state.hpp"
 #include "sandbox/window/layout.hpp"
 
@@ -18,8 +19,9 @@ void draw_lights(const std::vector<LightLabel>& lights);
 /// Draws the handles of the selection; the active one is highlighted.
 void draw_gizmo(const Gizmo& gizmo, std::optional<std::size_t> active);
 
-/// Draws the line between two configurations; a drag moves it.
-void draw_divider(Comparison& comparison, const Rectangle& scene);
+/// Draws the line between two pictures, which a drag moves, and says which one is on which side; of their
+/// difference, what it is of.
+void draw_comparison(Comparison& comparison, const SideLabels& labels, const Rectangle& scene);
 
 /// Draws messages over the lower edge of the picture, also where there is no panel: what has failed, and what
 /// was done last.

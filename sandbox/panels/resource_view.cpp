@@ -2,7 +2,6 @@
 
 #include <algorithm>
 #include <array>
-#include <cstring>
 #include <string_view>
 
 #include <fmt/format.h>
@@ -95,27 +94,50 @@ void draw_texture_controls(Inspection& inspection, const InspectionResult& resul
     if (result.mapping == Mapping::heat) draw_ramp(result);
 }
 
-/// Each element as its 32-bit words, as whole numbers and as floats.
+/// A table with a line for each element that was read, and a column for each field.
 void draw_elements(const BufferElements& elements) {
-    text(fmt::format("{} elements of {} bytes; the first ones:", elements.count, elements.stride));
-    const std::size_t words = elements.stride / sizeof(std::uint32_t);
-    if (words == 0) return;
-    for (std::size_t at = 0; at + elements.stride <= elements.bytes.size(); at += elements.stride) {
-        std::string line = fmt::format("{:4}:", at / elements.stride);
-        for (std::size_t word = 0; word < std::min<std::size_t>(words, 16); ++word) {
-            std::uint32_t bits = 0;
-            std::memcpy(&bits, &elements.bytes[at + word * sizeof bits], sizeof bits);
-            float number = 0.0F;
-            std::memcpy(&number, &bits, sizeof number);
-            // Small whole numbers are denormal as floats.
-            const bool is_whole = bits < 0x0080'0000U;
-            line += is_whole ? fmt::format(" {}", bits) : fmt::format(" {:.4g}", number);
-        }
-        text(line);
+    const std::size_t read = elements.bytes.size() / std::max(elements.stride, 1U);
+    text(fmt::format("{} elements of {} bytes; the first {}:", elements.count, elements.stride, read));
+    if (elements.fields.empty()) return text("The fields of this buffer are not known.");
+    constexpr ImGuiTableFlags plain = ImGuiTableFlags_ScrollX | ImGuiTableFlags_ScrollY |
+                                      ImGuiTableFlags_BordersInnerV | ImGuiTableFlags_RowBg |
+                                      ImGuiTableFlags_SizingFixedFit | ImGuiTableFlags_NoSavedSettings;
+    const int columns = static_cast<int>(elements.fields.size()) + 1;
+    const float height = ImGui::GetTextLineHeightWithSpacing() * static_cast<float>(read + 2);
+    const ImVec2 room = ImGui::GetIO().DisplaySize;
+    if (!ImGui::BeginTable("elements", columns, plain, {0.5F * room.x, std::min(height, 0.6F * room.y)})) {
+        return;
     }
+    ImGui::TableSetupScrollFreeze(1, 1);
+    ImGui::TableSetupColumn("");
+    for (const ElementField& field : elements.fields) ImGui::TableSetupColumn(field.name.c_str());
+    ImGui::TableHeadersRow();
+    ImGuiListClipper lines;
+    lines.Begin(static_cast<int>(read));
+    while (lines.Step()) {
+        for (int line = lines.DisplayStart; line < lines.DisplayEnd; ++line) {
+            ImGui::TableNextColumn();
+            text(fmt::format("{}", line));
+            for (const ElementField& field : elements.fields) {
+                ImGui::TableNextColumn();
+                text(words_of(elements, field, static_cast<std::size_t>(line)));
+            }
+        }
+    }
+    ImGui::EndTable();
 }
 
 }  // namespace
+
+std::string words_of(const BufferElements& elements, const ElementField& field, std::size_t index) {
+    const bool is_whole = field.type == NumberType::uint32 || field.type == NumberType::int32;
+    std::string words;
+    for (const double number : numbers_of(elements, field, index)) {
+        if (!words.empty()) words += ' ';
+        words += is_whole ? fmt::format("{:.0f}", number) : fmt::format("{:.4g}", number);
+    }
+    return words;
+}
 
 void draw_resource(const std::string& name, Inspection& inspection, const InspectionResult& result,
                    const BufferElements& elements, const Rectangle& scene) {

@@ -1,5 +1,6 @@
 #pragma once
 
+#include <cstddef>
 #include <string>
 
 #include <candela/inspection.hpp>
@@ -11,5 +12,9 @@ namespace candela::sandbox {
 /// if it is a buffer, as numbers. Below it are the controls that change `inspection`.
 void draw_resource(const std::string& name, Inspection& inspection, const InspectionResult& result,
                    const BufferElements& elements, const Rectangle& scene);
+
+/// The numbers of a field of an element that was read: whole ones with all digits, others with four.
+[[nodiscard]] std::string words_of(const BufferElements& elements, const ElementField& field,
+                                   std::size_t index);
 
 }  // namespace candela::sandbox

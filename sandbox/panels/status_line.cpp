@@ -56,6 +56,10 @@ void draw_status_line(const Status& status, const Rectangle& at, double seconds)
             ImGui::SameLine(0.0F, 0.0F);
         }
         ImGui::TextUnformatted(to_words(status).c_str());
+        if (!status.warning.empty()) {
+            ImGui::SameLine(0.0F, 0.0F);
+            ImGui::TextColored({1.0F, 0.5F, 0.4F, 1.0F}, " · %s", status.warning.c_str());
+        }
     }
     ImGui::End();
     ImGui::PopStyleVar(3);

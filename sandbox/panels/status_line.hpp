@@ -18,7 +18,8 @@ struct Status {
     std::uint32_t to_refine = 0;  ///< frames that it will average; 0: refinement is off
     Quality quality{};
     bool settled = false;
-    std::string busy;  ///< what takes long at present, for example "compiling shaders"; empty: nothing
+    std::string warning;  ///< why the picture may not be as wanted; empty: for no reason
+    std::string busy;     ///< what takes long at present, for example "compiling shaders"; empty: nothing
 };
 
 /// The status as words, for example "9.3 ms (mean 10.1) · 512 VPLs · refined 12/1024".

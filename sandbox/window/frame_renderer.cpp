@@ -235,13 +235,15 @@ void FrameRenderer::draw_reference(tools::Canvas& canvas) {
     renderer_->tone_map(tools::flipped(picture).pixels, canvas.target());
 }
 
-/// The description changes with the graph, which also depends on the scene.
+/// The description changes with the graph, which also depends on the scene, and with the sizes that resources
+/// have, which are asked for as often as the report.
 std::shared_ptr<const GraphDescription> FrameRenderer::graph() {
     const auto& passes = renderer_->last_passes();
     std::vector<std::string> names;
     names.reserve(passes.size());
     for (const PassRecord& pass : passes) names.emplace_back(pass.name);
-    if (!graph_ || names != graph_passes_) {
+    if (!graph_ || names != graph_passes_ || graph_time_ != report_time_) {
+        graph_time_ = report_time_;
         graph_ = std::make_shared<const GraphDescription>(renderer_->description());
     }
     graph_passes_ = std::move(names);

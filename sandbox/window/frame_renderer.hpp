@@ -92,6 +92,7 @@ class FrameRenderer {
     Clock::time_point report_time_;
     std::shared_ptr<const GraphDescription> graph_;
     std::vector<std::string> graph_passes_;
+    Clock::time_point graph_time_;  ///< report_time_ when it was made
 };
 
 }  // namespace candela::sandbox

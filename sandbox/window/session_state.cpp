@@ -7,6 +7,9 @@ Status status_of(const SessionState& state) {
     status.busy = state.busy;
     status.frame_ms = state.costs.frame().last_ms();
     status.mean_ms = state.costs.frame().mean_ms;
+    if (state.document && state.app.configuration.shadows.enabled) {
+        status.warning = words_of(state.document->scene.world, state.document->interaction.enclosed());
+    }
     if (!state.shown) return status;
     status.quality = state.shown->quality;
     status.settled = state.is_settled();

@@ -38,10 +38,8 @@ void change_comparison(AppState& state) {
 /// The next texture or buffer of the graph; after the last one, the picture.
 void change_resource(const GraphDescription& graph, GraphSelection& selection, int step) {
     std::vector<std::optional<std::string>> all{std::nullopt};
-    for (const DescribedResource& resource : graph.resources) {
-        if (resource.kind != ResourceKind::value && !is_of_inspection(resource.name)) {
-            all.emplace_back(resource.name);
-        }
+    for (std::size_t i = 0; i < graph.resources.size(); ++i) {
+        if (can_be_shown(graph, i)) all.emplace_back(graph.resources[i].name);
     }
     const auto at = std::ranges::find(all, selection.resource);
     const auto index = at == all.end() ? 0 : at - all.begin();

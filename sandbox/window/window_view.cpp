@@ -40,9 +40,7 @@ void draw_overlay(const SessionState& state) {
 /// A tab, whose content `draw` draws while it is open.
 template <class F>
 void tab(const char* name, const char* tip, const F& draw) {
-    const bool open = ImGui::BeginTabItem(name);
-    note_control(name, tip);
-    if (!open) return;
+    if (!begin_tab(name, tip)) return;
     draw();
     ImGui::EndTabItem();
 }
@@ -94,7 +92,7 @@ void draw_scene(SessionState& state, glm::vec2 window) {
     }
     draw_pictures(shown, state.app.comparison, state.layout.scene);
     draw_overlay(state);
-    draw_divider(state.app.comparison, state.layout.scene);
+    draw_comparison(state.app.comparison, side_labels(state.app, state.reference), state.layout.scene);
 }
 
 std::vector<Action> draw_panel(SessionState& state) {

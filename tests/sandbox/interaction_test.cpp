@@ -308,6 +308,40 @@ TEST_CASE("a selected entity that is gone is deselected") {
     user.interaction.step(0.0F, size, origin);
     CHECK_FALSE(user.interaction.selected);
 }
+
+TEST_CASE("a copy of an object stands beside it, so that both are seen") {
+    User user;
+    const auto copy_of_box = [&] {
+        user.interaction.selected = user.box;
+        user.key(GLFW_KEY_D, GLFW_MOD_CONTROL);
+        const glm::vec3 away =
+            position_of(user.world, *user.interaction.selected) - position_of(user.world, user.box);
+        CHECK(user.viewport().contains(user.seen(*user.interaction.selected)));
+        return away;
+    };
+    // The viewer looks along -z, from above: the sides of the cube are 1 m long. With a gap, but near.
+    const glm::vec3 right = copy_of_box();
+    CHECK(right.x > 1.0F);
+    CHECK(right.x < 1.5F);
+    CHECK(glm::length(glm::vec2(right.y, right.z)) < tolerance_world);
+    // At the right edge of the picture there is no room at the right.
+    glm::vec3 at(0.0F);
+    while (user.viewport().contains(user.seen(at + glm::vec3(0.5F, 0.0F, 0.0F)))) at.x += 0.1F;
+    move_to(user.world, user.box, at);
+    CHECK(copy_of_box().x < -1.0F);
+}
+
+TEST_CASE("a light that is moved into an object is found there, until it is out again") {
+    User user;
+    CHECK(user.interaction.enclosed().empty());
+    move_to(user.world, user.light, {0.1F, 0.1F, 0.1F});
+    user.interaction.step(0.0F, size, origin);
+    REQUIRE(user.interaction.enclosed().size() == 1);
+    CHECK(user.interaction.enclosed().front() == EnclosedLight{user.light, user.box});
+    move_to(user.world, user.light, {1.5F, 0.5F, 0.5F});
+    user.interaction.step(0.0F, size, origin);
+    CHECK(user.interaction.enclosed().empty());
+}
 }  // TEST_SUITE("interaction")
 
 }  // namespace candela::sandbox

@@ -37,12 +37,18 @@ TEST_CASE("paths go round in both directions") {
     CHECK(view.state.configuration.path == first);
 }
 
-TEST_CASE("resources go round, values left out, with the picture between the last and the first") {
+TEST_CASE("resources that can be shown go round, with the picture between the last and the first") {
     View view;
-    view.graph.resources = {{.name = "depth", .kind = ResourceKind::texture},
+    view.graph.resources = {{.name = "target", .kind = ResourceKind::texture, .lifetime = Lifetime::imported},
+                            {.name = "depth", .kind = ResourceKind::texture},
                             {.name = "plan", .kind = ResourceKind::value},
                             {.name = "inspected picture", .kind = ResourceKind::texture},
-                            {.name = "lights", .kind = ResourceKind::buffer}};
+                            {.name = "lights", .kind = ResourceKind::buffer},
+                            {.name = "exposure", .kind = ResourceKind::buffer}};
+    // These run after the view of resources: what they write cannot be shown, what they read can.
+    view.graph.passes = {
+        {.name = "exposure 2", .accesses = {{.resource = 4}, {.resource = 5, .write = true}}},
+        {.name = "tone-map 2", .accesses = {{.resource = 1}}}};
     for (const char* const name : {"depth", "lights"}) {
         CHECK(view.carry_out(Action::next_resource));
         CHECK(view.selection.resource == name);

@@ -52,6 +52,11 @@ class CANDELA_API SceneRays {
     /// Whether a surface hides `to` from `from`; world space. Materials that blend hide nothing.
     [[nodiscard]] bool blocked(const glm::vec3& from, const glm::vec3& to) const;
 
+    /// The object that a point is inside of, from where no light gets out: in each of 14 directions the
+    /// nearest triangle, or one as near, shows its back, and is of a single-sided material that does not
+    /// blend. Of several such objects the nearest one; world space.
+    [[nodiscard]] std::optional<Entity> enclosing(const glm::vec3& point) const;
+
  private:
     class State;
 
