@@ -48,10 +48,22 @@ Bytes take_chunk(Bytes& rest, std::string_view type) {
     return chunk;
 }
 
+/// Fails if no text begins with this byte.
+void require_text(std::uint8_t first) {
+    const bool is_space = first == ' ' || first == '\t' || first == '\r' || first == '\n';
+    if (first > ' ' || is_space) return;
+    throw SceneError(fmt::format(
+        "is no glTF file: it begins with the byte {:#04x}, where text or the sign of a .glb has to be",
+        first));
+}
+
 Container split(Bytes bytes) {
     using namespace std::string_view_literals;
     if (bytes.empty()) throw SceneError("the file is empty");
-    if (bytes.size() < 4 || !std::ranges::equal(bytes.first(4), "glTF"sv)) return {bytes, {}};
+    if (bytes.size() < 4 || !std::ranges::equal(bytes.first(4), "glTF"sv)) {
+        require_text(bytes.front());
+        return {bytes, {}};
+    }
     if (bytes.size() < 12) throw SceneError("the .glb ends inside its header");
     if (read_u32(bytes, 4) != 2) {
         throw SceneError(fmt::format("the .glb has version {}; only 2 is read", read_u32(bytes, 4)));

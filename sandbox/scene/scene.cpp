@@ -59,7 +59,25 @@ Entity add_framing_camera(World& world, float aspect) {
     return entity;
 }
 
+bool has_area(const Primitive& primitive) {
+    const auto corner = [&](std::size_t index) {
+        return primitive.vertices[primitive.indices[index]].position;
+    };
+    for (std::size_t i = 0; i + 2 < primitive.indices.size(); i += 3) {
+        const glm::vec3 a = corner(i);
+        if (glm::cross(corner(i + 1) - a, corner(i + 2) - a) != glm::vec3(0.0F)) return true;
+    }
+    return false;
+}
+
 }  // namespace
+
+std::string why_nothing_is_seen(const Scene& scene) {
+    for (auto [entity, instance] : scene.world.view<MeshInstance>()) {
+        if (std::ranges::any_of(instance.mesh->primitives, has_area)) return "";
+    }
+    return fmt::format("{}: there is nothing to see: it has no triangle with an area", scene.path.string());
+}
 
 std::optional<std::size_t> parse_index(const std::string& text) {
     std::size_t index = 0;
@@ -96,6 +114,9 @@ ImportOptions unconfined() {
 Scene load_scene(const fs::path& path, const ImportOptions& options) {
     Scene scene{path, {}, {}, {}};
     scene.warnings = import_gltf(path, scene.world, options).warnings;
+    if (std::string fault = why_nothing_is_seen(scene); !fault.empty()) {
+        scene.warnings.insert(scene.warnings.begin(), std::move(fault));
+    }
     return scene;
 }
 

@@ -51,6 +51,10 @@ struct Scene {
 [[nodiscard]] Scene load_scene(const std::filesystem::path& path,
                                const ImportOptions& options = unconfined());
 
+/// Why a picture of the scene has no surfaces, in one line with the file; empty if it has a triangle with an
+/// area.
+[[nodiscard]] std::string why_nothing_is_seen(const Scene& scene);
+
 /// Saves a world as .gltf or .glb so that load_scene opens the same. `of_app` are entities that the app has
 /// added for itself, such as the camera of its view: they are not saved. Returns what glTF cannot hold, one
 /// line each. Throws SceneError that names the file and the error; the files are then as they were. See

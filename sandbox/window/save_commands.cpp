@@ -1,5 +1,6 @@
 #include "sandbox/window/save_commands.hpp"
 
+#include <algorithm>
 #include <array>
 #include <optional>
 #include <stdexcept>
@@ -12,6 +13,17 @@
 #include "sandbox/files/numbered_file.hpp"
 
 namespace candela::sandbox {
+
+namespace {
+
+bool moves_anything(const Script& script) {
+    return std::ranges::any_of(script.tracks, [](const Track& track) {
+        return !track.translation.empty() || !track.rotation.empty() || !track.scale.empty() ||
+               !track.intensity.empty() || !track.colour.empty();
+    });
+}
+
+}  // namespace
 
 SavedScene save_document(const Document& document) {
     const std::filesystem::path path = next_numbered_file(".gltf");
@@ -32,9 +44,10 @@ std::string toggle_recording(Document& document) {
         document.recorder.emplace(document.scene.world, *selected);
         return "recording the motion of the selection; Ctrl+R ends it";
     }
-    const std::filesystem::path path = next_numbered_file("-animation.json");
     const Script script = document.recorder->finish();
     document.recorder.reset();
+    if (!moves_anything(script)) return "nothing has moved: no script was written";
+    const std::filesystem::path path = next_numbered_file("-animation.json");
     save_script(script, document.scene.path, path);
     return written(path);
 }

@@ -21,8 +21,8 @@ struct SavedScene {
 /// Returns the file.
 [[nodiscard]] std::filesystem::path save_configuration(const Configuration& configuration);
 
-/// Begins to record the motion of the selection, or ends that and saves it as an animation script. Returns
-/// what to tell the user. Throws std::runtime_error if nothing is selected.
+/// Begins to record the motion of the selection, or ends that and saves it as an animation script, if
+/// anything has moved. Returns what to tell the user. Throws std::runtime_error if nothing is selected.
 [[nodiscard]] std::string toggle_recording(Document& document);
 
 /// What to tell the user of a written file.

@@ -26,7 +26,7 @@ void WindowSession::carry_out(const Command& command) {
         case Action::open_scene:
             gui_.move_focus();
             return open_panel_.show(
-                {{"recent", recent_files(recent_files_list())}, {"shipped", shipped_scenes()}});
+                {{"recent", recent_files(recent_files_list())}, {"shipped", shipped_scenes()}}, ".");
         case Action::save_scene:
             return attempt([&] { save_scene(); });
         case Action::save_configuration:

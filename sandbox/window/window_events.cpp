@@ -61,7 +61,7 @@ void WindowSession::take(const InputEvent& event) {
 
 void WindowSession::take_news() {
     take_loaded_scene();
-    for (const std::filesystem::path& file : window_.take_dropped_files()) take_dropped_file(file);
+    for (const std::filesystem::path& file : window_.take_dropped_files()) open_file(file);
     take_saved_picture();
     take_saved_configuration();
     take_saved_shaders();
@@ -103,11 +103,13 @@ void WindowSession::choose_exposure() {
 void WindowSession::announce_scene() {
     const Scene& scene = state_.document->scene;
     state_.app.warnings = first_ten(scene.warnings);
+    if (std::string fault = why_nothing_is_seen(scene); !fault.empty())
+        state_.app.errors = {std::move(fault)};
     window_.set_title(fmt::format("Candela - {}", scene.path.filename().string()));
     for (const std::string& warning : state_.app.warnings) print_message(warning);
 }
 
-void WindowSession::take_dropped_file(const std::filesystem::path& file) {
+void WindowSession::open_file(const std::filesystem::path& file) {
     const std::string extension = tools::lower_extension(file);
     if (extension == ".gltf" || extension == ".glb") return open(file);
     if (!state_.document || (extension != ".hdr" && extension != ".exr")) {

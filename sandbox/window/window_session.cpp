@@ -154,7 +154,7 @@ void WindowSession::draw() {
     for (const Action action : draw_panel(state_)) carry_out({action});
     draw_messages(state_.app.errors, state_.app.notice, state_.layout.scene);
     draw_help(state_.app.help, state_.layout.scene);
-    if (const auto chosen = open_panel_.draw()) open(*chosen);
+    if (const auto chosen = open_panel_.draw()) open_file(*chosen);
     draw_status_line(status_of(state_), state_.layout.status, ImGui::GetTime());
     gui_.end_frame();
     window_.swap();

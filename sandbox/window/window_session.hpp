@@ -86,7 +86,8 @@ class WindowSession {
     void take(const InputEvent& event);
     void take_news();
     void take_loaded_scene();
-    void take_dropped_file(const std::filesystem::path& file);
+    /// A scene, or a sky for the present one.
+    void open_file(const std::filesystem::path& file);
     void take_saved_picture();
     void take_saved_configuration();
     void take_saved_shaders();

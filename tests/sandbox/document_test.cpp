@@ -3,7 +3,11 @@
 #include <GLFW/glfw3.h>
 
 #include <doctest/doctest.h>
+
 #include <glm/geometric.hpp>
+#include "sandbox/editing/light_picking.hpp"
+#include "sandbox/files/numbered_file.hpp"
+#include "sandbox/window/save_commands.hpp"
 
 #include <candela/scene/hierarchy.hpp>
 
@@ -105,6 +109,18 @@ TEST_CASE("another thread gets the same copy of the world while nothing changes"
     CHECK(player.document.copy_of_world() == copy);
     player.step();
     CHECK(player.document.copy_of_world() != copy);
+}
+
+TEST_CASE("a recording of something that has not moved writes no file, and says so") {
+    Document document(load_scene(shipped_file("scenes", "cornell.gltf")), std::nullopt, 1.0F);
+    document.interaction.selected = light_markers(document.scene.world).front().entity;
+    const std::filesystem::path next = next_numbered_file("-animation.json");
+    static_cast<void>(toggle_recording(document));
+    REQUIRE(document.recorder);
+    for (const double seconds : {0.0, 0.1, 1.0}) document.recorder->record(document.scene.world, seconds);
+    CHECK(toggle_recording(document) == "nothing has moved: no script was written");
+    CHECK_FALSE(document.recorder);
+    CHECK_FALSE(std::filesystem::exists(next));
 }
 }  // TEST_SUITE("document")
 

@@ -3,8 +3,14 @@
 #include <doctest/doctest.h>
 
 #include <algorithm>
+#include <cstddef>
+#include <cstring>
+#include <filesystem>
+#include <fstream>
 #include <functional>
 #include <tuple>
+
+#include <imgui_internal.h>
 
 #include <candela/graph/describe.hpp>
 
@@ -13,8 +19,10 @@
 #include "sandbox/panels/graph_panel.hpp"
 #include "sandbox/panels/open_panel.hpp"
 #include "sandbox/panels/quality_panel.hpp"
+#include "sandbox/panels/resource_view.hpp"
 #include "sandbox/panels/scene_panel.hpp"
 #include "sandbox/panels/view_panel.hpp"
+#include "tests/sandbox/temporary_folder.hpp"
 
 namespace candela::sandbox {
 
@@ -47,13 +55,19 @@ class Screen {
         for (const auto& [label, place] : places_) edge = std::max(edge, place.corner.x + place.size.x);
         return edge;
     }
-    void click(std::string_view label) {
-        settle();  // what was changed since the last click
+    /// Moves the pointer there. Returns the place.
+    Rectangle point_at(std::string_view label) {
+        settle();  // what was changed since the last time
         const auto place = places_.find(label);
         REQUIRE_MESSAGE(place != places_.end(), label);
         const glm::vec2 at = place->second.corner + 0.5F * place->second.size;
         ImGui::GetIO().MousePos = {at.x, at.y};
+        const Rectangle found = place->second;
         settle();
+        return found;
+    }
+    void click(std::string_view label) {
+        point_at(label);
         for (const bool down : {true, false}) {
             ImGui::GetIO().MouseDown[0] = down;
             settle();
@@ -219,9 +233,66 @@ TEST_CASE("a scene is picked from a list, and the window of the list goes") {
         if (const auto file = panel.draw()) chosen = file;
     });
     CHECK_FALSE(screen.has("file name"));
-    panel.show({{"recent", {}}, {"shipped", {"scenes/a.gltf", "scenes/b.gltf"}}});
+    panel.show({{"recent", {}}, {"shipped", {"scenes/a.gltf", "scenes/b.gltf"}}}, ".");
     screen.click("b.gltf");
     CHECK(chosen == "scenes/b.gltf");
+    CHECK_FALSE(panel.is_shown());
+}
+
+TEST_CASE("the tooltip of a tab stands beside the panel, and covers nothing of it") {
+    constexpr float edge = 700.0F;  // of the panel, at the left
+    Screen screen(
+        [&] {
+            ImGui::SetNextWindowPos({edge, 20.0F});
+            ImGui::SetNextWindowSize({300.0F, 400.0F});
+            ImGui::Begin("panel", nullptr, ImGuiWindowFlags_NoTitleBar);
+            ImGui::BeginTabBar("tabs");
+            for (const char* const name : {"one", "two"}) {
+                if (begin_tab(name, "a tooltip that is as long as most are, or a little longer")) {
+                    ImGui::EndTabItem();
+                }
+            }
+            ImGui::EndTabBar();
+            ImGui::End();
+        },
+        1000.0F);
+    const Rectangle tab = screen.point_at("two");
+    const ImGuiWindow* tip = ImGui::FindWindowByName("##Tooltip_00");
+    REQUIRE(tip != nullptr);
+    CHECK(tip->Size.x > 50.0F);
+    CHECK(tip->Pos.x + tip->Size.x <= edge);
+    CHECK(tip->Pos.x >= 0.0F);
+    CHECK(tip->Pos.y == tab.corner.y);
+}
+
+TEST_CASE("fields of elements are written by their type") {
+    Vertex vertex;
+    vertex.position = {1.0F, 0.25F, -3.0F};
+    BufferElements elements{.bytes = {}, .stride = sizeof(Vertex), .count = 2};
+    elements.bytes.resize(2 * sizeof(Vertex));
+    std::memcpy(&elements.bytes[sizeof(Vertex)], &vertex, sizeof(Vertex));
+    CHECK(words_of(elements, {"position", NumberType::float32, 3, 0}, 1) == "1 0.25 -3");
+    // As a float, two of these numbers are no number.
+    CHECK(words_of(elements, {"colour", NumberType::unorm16, 4, offsetof(Vertex, colour)}, 1) == "1 1 1 1");
+    CHECK(words_of(elements, {"bits", NumberType::uint32, 1, offsetof(Vertex, colour)}, 1) == "4294967295");
+}
+
+TEST_CASE("a scene is picked in a folder within the shown one, and a folder that is not there is named") {
+    const TemporaryFolder folder;
+    std::filesystem::create_directory(folder / "lamps");
+    std::ofstream(folder / "lamps/lamp##2.gltf") << "{}";
+    OpenPanel panel;
+    std::optional<std::filesystem::path> chosen;
+    Screen screen([&] {
+        if (const auto file = panel.draw()) chosen = file;
+    });
+    panel.show({}, folder / "");
+    screen.click("lamps/");
+    CHECK_FALSE(chosen.has_value());
+    screen.click("../");
+    screen.click("lamps/");
+    screen.click("lamp");  // controls are known by what is before the signs
+    CHECK(chosen == folder / "lamps/lamp##2.gltf");
     CHECK_FALSE(panel.is_shown());
 }
 }  // TEST_SUITE("panels")

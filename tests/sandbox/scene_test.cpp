@@ -122,6 +122,36 @@ TEST_CASE("a scene without cameras gets one that shows all of its bounds") {
         }
     }
 }
+
+TEST_CASE("a file of zeros is an error that names the file and the fault, as is no area a warning") {
+    const TemporaryFolder folder;
+    for (const char* const name : {"zeros.gltf", "zeros.glb"}) {
+        std::ofstream(folder / name) << std::string(4096, '\0');
+        const std::string begin =
+            (folder / name).string() + ": is no glTF file: it begins with the byte 0x00";
+        try {
+            static_cast<void>(load_scene(folder / name));
+            FAIL("was opened");
+        } catch (const SceneError& error) {
+            CHECK_MESSAGE(std::string(error.what()).starts_with(begin), error.what());
+        }
+    }
+    // A triangle whose corners are 36 bytes of zeros.
+    std::ofstream(folder / "points.gltf") << R"({"asset": {"version": "2.0"}, "scene": 0,
+        "scenes": [{"nodes": [0]}], "nodes": [{"mesh": 0}],
+        "meshes": [{"primitives": [{"attributes": {"POSITION": 0}}]}],
+        "accessors": [{"bufferView": 0, "componentType": 5126, "count": 3, "type": "VEC3",
+                       "min": [0, 0, 0], "max": [0, 0, 0]}],
+        "bufferViews": [{"buffer": 0, "byteLength": 36}],
+        "buffers": [{"byteLength": 36, "uri": "data:application/octet-stream;base64,)"
+                                          << std::string(48, 'A') << R"("}]})";
+    const Scene points = load_scene(folder / "points.gltf");
+    REQUIRE_FALSE(points.warnings.empty());
+    CHECK(points.warnings.front() == why_nothing_is_seen(points));
+    CHECK(
+        points.warnings.front().starts_with((folder / "points.gltf").string() + ": there is nothing to see"));
+    CHECK(why_nothing_is_seen(load_scene(shipped_file("scenes", "cornell.gltf"))).empty());
+}
 }  // TEST_SUITE("scene")
 
 }  // namespace candela::sandbox
