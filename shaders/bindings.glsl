@@ -52,6 +52,8 @@
 #define BINDING_RECEIVED BINDING_LIST_COUNT
 // Passes that inspect resources read light lists, but draw no meshes.
 #define BINDING_INSPECTED_RANGES BINDING_INSTANCES
+#define BINDING_INSPECTED_HISTOGRAM BINDING_MATERIALS
+#define BINDING_INSPECTED_TEXEL BINDING_MATERIALS
 // Passes that expose the picture read no other buffer.
 #define BINDING_EXPOSURE BINDING_INSTANCES
 
@@ -130,7 +132,8 @@
 #define SAMPLE_GROUP 16     // the same in vpl_samples.comp
 #define SAMPLE_COLUMNS 24   // of the grid of pixels in vpl_samples.comp
 #define SAMPLE_ROWS 18
-#define INSPECT_GROUP 64    // invocations of a work group of inspect_range.comp: a power of two
+#define INSPECT_GROUP 64    // invocations of a work group of inspect_range.comp and inspect_histogram.comp: a power of two
+#define INSPECT_BINS 64     // parts of the range that inspect_histogram.comp counts the values in
 #define EXPOSURE_GROUP 64   // invocations of a work group of exposure.comp: a power of two
 #define EXPOSURE_GROUPS 256 // work groups that a picture of any size is shared out to
 #define NO_SURFEL 0xffffffffu

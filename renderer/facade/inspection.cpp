@@ -15,7 +15,10 @@
 #include "renderer/facade/gpu_of.hpp"
 #include "renderer/passes/inspect/element_fields.hpp"
 #include "renderer/passes/inspect/inspect.hpp"
+#include "renderer/passes/inspect/inspect_histogram.hpp"
 #include "renderer/passes/inspect/inspect_range.hpp"
+#include "renderer/passes/inspect/inspect_texel.hpp"
+#include "shaders/bindings.glsl"
 #include "shaders/inspect/heat_colours.glsl"
 
 namespace candela {
@@ -24,13 +27,24 @@ namespace {
 constexpr std::string_view extension_name = "inspect";
 constexpr std::string_view result_pass = "inspect-result";
 
-/// The picture of the last frame, and the buffer with its range.
+/// What the passes found of all texels.
+struct Statistics {
+    glm::vec4 automatic{0.0F};  // low, high, number of faulty texels
+    glm::vec4 values{0.0F};
+    std::vector<std::uint32_t> histogram;
+};
+
+/// The picture of the last frame, and the buffers with what belongs to it.
 struct Picture {
     Shown shown;
     bool lists = false;
     ObjectId texture = 0;
     ObjectId ranges = 0;
-    std::optional<ValueRange> range{};  // none: not read back yet
+    ObjectId histogram = 0;
+    ObjectId texel_values = 0;
+    std::optional<glm::uvec2> texel{};
+    std::optional<Statistics> statistics{};      // none: not read back yet
+    std::optional<InspectedTexel> texel_read{};  // likewise
 };
 
 struct FoundElements {
@@ -92,10 +106,34 @@ double number_at(std::span<const std::byte> bytes, std::size_t at, NumberType ty
     return static_cast<double>(number_at<float>(bytes, at));
 }
 
-ValueRange read_range(const Gpu& gpu, ObjectId ranges) {
-    glm::vec2 range(0.0F);
-    gl::read_buffer(gpu.gl(), ranges, std::as_writable_bytes(std::span(&range, 1)));
-    return {range.x, range.y};
+template <class T>
+std::vector<T> read_elements(const Gpu& gpu, ObjectId buffer, std::size_t count) {
+    std::vector<T> elements(count);
+    gl::read_buffer(gpu.gl(), buffer, std::as_writable_bytes(std::span(elements)));
+    return elements;
+}
+
+/// Numbers that the picture shows of a texel: one for each channel of RGB, else one.
+std::size_t shown_channels(const Shown& shown) {
+    return shown.channels == static_cast<int>(Channels::rgb) && !shown.depth_terms ? 3 : 1;
+}
+
+Statistics read_statistics(const Gpu& gpu, const Picture& picture) {
+    const std::vector<glm::vec4> ranges = read_elements<glm::vec4>(gpu, picture.ranges, 2);
+    return {
+        ranges[0], ranges[1],
+        read_elements<std::uint32_t>(gpu, picture.histogram, INSPECT_BINS * shown_channels(picture.shown))};
+}
+
+InspectedTexel read_texel(const Gpu& gpu, const Picture& picture) {
+    const std::vector<glm::vec4> values = read_elements<glm::vec4>(gpu, picture.texel_values, 2);
+    const Shown& shown = picture.shown;
+    InspectedTexel texel{.at = glm::min(*picture.texel, shown.texels - 1U), .channels = values[0]};
+    if (!picture.lists) {
+        texel.channel_count = static_cast<std::uint32_t>(gl::format_info(shown.desc.format).components);
+    }
+    if (shown.depth_terms) texel.metres = values[1].x;
+    return texel;
 }
 
 }  // namespace
@@ -107,7 +145,13 @@ struct CANDELA_PRIVATE ResourceInspector::State : std::enable_shared_from_this<S
     FoundElements elements;
 
     void declare(FrameGraph& graph, Gpu& gpu, const ViewFrame& frame);
-    ValueHandle<Inspection> add_settings(FrameGraph& graph);
+    /// What is to be seen, and which texel: of its own, because another one changes nothing else.
+    struct Settings {
+        ValueHandle<Inspection> inspection;
+        ValueHandle<std::optional<glm::uvec2>> texel;
+    };
+
+    Settings add_settings(FrameGraph& graph);
     void add_picture(FrameGraph& graph, Gpu& gpu, const Inspected& inspected);
     void add_elements(FrameGraph& graph, const FoundBuffer& buffer);
 };
@@ -126,33 +170,49 @@ void ResourceInspector::State::declare(FrameGraph& graph, Gpu& gpu, const ViewFr
 }
 
 /// Has a side effect because what is wanted changes from outside of the graph.
-ValueHandle<Inspection> ResourceInspector::State::add_settings(FrameGraph& graph) {
+ResourceInspector::State::Settings ResourceInspector::State::add_settings(FrameGraph& graph) {
     return graph.add("inspect-settings", [&](Pass& pass) {
         pass.side_effect();
-        const auto settings = pass.write(graph.value<Inspection>("inspection"));
-        pass.run([=, self = shared_from_this()](Execution& run) { run.set(settings, self->wanted); });
+        const Settings settings{pass.write(graph.value<Inspection>("inspection")),
+                                pass.write(graph.value<std::optional<glm::uvec2>>("inspected texel"))};
+        pass.run([=, self = shared_from_this()](Execution& run) {
+            Inspection inspection = self->wanted;
+            inspection.texel.reset();
+            run.set(settings.inspection, std::move(inspection));
+            run.set(settings.texel, self->wanted.texel);
+        });
         return settings;
     });
 }
 
 /// The last pass keeps the others in the graph, and makes their results known outside of it.
 void ResourceInspector::State::add_picture(FrameGraph& graph, Gpu& gpu, const Inspected& inspected) {
-    const auto settings = add_settings(graph);
+    const auto [settings, texel] = add_settings(graph);
     const auto ranges = add_inspect_range(graph, gpu, inspected, settings);
     const auto drawn = add_inspect(graph, gpu, inspected, settings, ranges);
-    graph.add(result_pass, [&](Pass& pass) {
+    const auto histogram = add_inspect_histogram(graph, gpu, inspected, settings, ranges);
+    const auto values = add_inspect_texel(graph, gpu, inspected, settings, texel);
+    graph.add(result_pass, [&, settings = settings, texel = texel](Pass& pass) {
         pass.side_effect();
         read_inspected(pass, inspected);
         pass.read(settings);
+        pass.read(texel);
         pass.read(ranges, Usage::copy);
+        pass.read(histogram, Usage::copy);
+        pass.read(values, Usage::copy);
         pass.read(drawn, Usage::sampled);
         pass.run([=, self = shared_from_this()](Execution& run) {
-            const bool same_range = !run.changed(ranges);
+            const bool same = !run.changed(ranges) && !run.changed(histogram);
+            const bool same_texel = !run.changed(values) && !run.changed(texel);
             self->picture = {.shown = shown_of(run, inspected, run.value(settings)),
                              .lists = inspected.grid.has_value(),
                              .texture = run.object(drawn),
                              .ranges = run.object(ranges),
-                             .range = same_range ? self->picture.range : std::nullopt};
+                             .histogram = run.object(histogram),
+                             .texel_values = run.object(values),
+                             .texel = run.value(texel),
+                             .statistics = same ? self->picture.statistics : std::nullopt,
+                             .texel_read = same_texel ? self->picture.texel_read : std::nullopt};
             if (inspected.buffer) self->elements = elements_of(run, *inspected.buffer);
         });
     });
@@ -216,10 +276,11 @@ InspectionResult ResourceInspector::result() const {
             fmt::format("a buffer with room for {} elements of {} bytes", elements.count, elements.stride);
         return result;
     }
-    if (!picture.shown.range && !picture.range) {
-        picture.range = read_range(gpu_of(*renderer_), picture.ranges);
-    }
-    const ValueRange range = picture.shown.range ? *picture.shown.range : *picture.range;
+    const Gpu& gpu = gpu_of(*renderer_);
+    if (!picture.statistics) picture.statistics = read_statistics(gpu, picture);
+    if (picture.texel && !picture.texel_read) picture.texel_read = read_texel(gpu, picture);
+    const Statistics& found = *picture.statistics;
+    const ValueRange range = picture.shown.range.value_or(ValueRange{found.automatic.x, found.automatic.y});
     return {.texture = picture.texture,
             .size = picture.shown.picture,
             .description = describe(picture),
@@ -228,7 +289,14 @@ InspectionResult ResourceInspector::result() const {
             .low = range.low,
             .high = range.high,
             .mips = picture.shown.mips,
-            .layers = picture.shown.layers};
+            .layers = picture.shown.layers,
+            .extent = picture.shown.extent,
+            .texel_size = picture.shown.texel_size,
+            .least = found.values.x,
+            .greatest = found.values.y,
+            .faulty = static_cast<std::uint32_t>(found.values.z),
+            .histogram = found.histogram,
+            .texel = picture.texel_read};
 }
 
 BufferElements ResourceInspector::read_buffer(std::uint64_t first, std::uint64_t most) const {

@@ -5,7 +5,7 @@
 
 layout(local_size_x = 8, local_size_y = 8) in;
 layout(rgba8, binding = IMAGE_INSPECTED) writeonly restrict uniform image2D picture;
-layout(std430, binding = BINDING_INSPECTED_RANGES) readonly restrict buffer Ranges { vec2 ranges[]; };
+layout(std430, binding = BINDING_INSPECTED_RANGES) readonly restrict buffer Ranges { vec4 ranges[]; };
 
 // In the order of candela::Mapping.
 const uint MAPPING_DEPTH = 2u;
@@ -21,7 +21,7 @@ uniform vec2 chosen_range;
 
 // From 0 to 1 within the range. An empty range is a threshold.
 vec3 in_range(vec3 v) {
-    vec2 range = automatic_range ? ranges[0] : chosen_range;
+    vec2 range = automatic_range ? ranges[0].xy : chosen_range;
     vec3 above = mix(vec3(0.0), vec3(1.0), greaterThan(v, vec3(range.y)));
     return range.y > range.x ? clamp((v - range.x) / (range.y - range.x), 0.0, 1.0) : above;
 }

@@ -326,6 +326,75 @@ TEST_CASE_FIXTURE(InspectionTests, "faulty values are magenta, and do not count 
     check_range(look(scene, {.resource = "painting", .mapping = Mapping::colour}), -4.0, 2.0, 0.0);
 }
 
+TEST_CASE_FIXTURE(InspectionTests,
+                  "values are counted in equal parts of the range, and faulty ones by themselves") {
+    configure(linear_configuration());
+    // 0 to 127, and two that are no numbers, in 13 rows of 10.
+    const auto value = [&](std::uint32_t, std::uint32_t, std::uint32_t x, std::uint32_t y) {
+        const std::uint32_t i = 10 * y + x;
+        return i < 128 ? static_cast<float>(i) : i == 128 ? not_a_number : infinity;
+    };
+    REQUIRE(renderer.extend(painting<float>(device.gl(), {{10, 13}, Format::r32f}, value)).empty());
+    const Scene scene = ground();
+    const InspectionResult all = look(scene, {.resource = "painting"});
+    CHECK(all.least == 0.0F);
+    CHECK(all.greatest == 127.0F);
+    CHECK(all.faulty == 2);
+    CHECK(all.histogram == std::vector<std::uint32_t>(64, 2));
+    // The range that is shown is not that of the values.
+    const InspectionResult part = look(scene, {.resource = "painting", .range = ValueRange{31.5F, 95.5F}});
+    CHECK(part.histogram == std::vector<std::uint32_t>(64, 1));
+    CHECK(part.least == 0.0F);
+    CHECK(part.greatest == 127.0F);
+    CHECK(part.faulty == 2);
+
+    // Of colours, each channel.
+    const auto colour = [](std::uint32_t, std::uint32_t, std::uint32_t x, std::uint32_t) {
+        return glm::vec4(x < 3 ? 0.0F : 1.0F, 0.5F, 1.0F, 9.0F);
+    };
+    REQUIRE(renderer.extend(painting<glm::vec4>(device.gl(), {{4, 2}, Format::rgba32f}, colour)).empty());
+    const InspectionResult coloured = look(scene, {.resource = "painting"});
+    REQUIRE(coloured.histogram.size() == 3 * 64);
+    CHECK(coloured.histogram[0] == 6);
+    CHECK(coloured.histogram[63] == 2);
+    CHECK(coloured.histogram[64 + 32] == 8);
+    CHECK(coloured.histogram[128 + 63] == 8);
+}
+
+TEST_CASE_FIXTURE(InspectionTests, "the values of a texel, of its mip and layer, and of depths in metres") {
+    configure(linear_configuration());
+    Scene scene = ground();
+    const TextureDesc floats{{8, 4}, Format::rgba32f, TextureShape::array, 3, 3};
+    const auto colour = [](std::uint32_t mip, std::uint32_t layer, std::uint32_t x, std::uint32_t y) {
+        return glm::vec4(mip * 10 + layer, x, y, 0.5F);
+    };
+    REQUIRE(renderer.extend(painting<glm::vec4>(device.gl(), floats, colour)).empty());
+    Inspection wanted{.resource = "painting"};
+    CHECK_FALSE(look(scene, wanted).texel);
+    wanted.texel = glm::uvec2(5, 3);
+    wanted.layer = 2;
+    const InspectionResult first = look(scene, wanted);
+    CHECK(first.extent == glm::uvec2(8, 4));
+    REQUIRE(first.texel);
+    CHECK(*first.texel == InspectedTexel{{5, 3}, {2.0F, 5.0F, 3.0F, 0.5F}, 4, {}});
+    // Another texel changes nothing else.
+    wanted.texel = glm::uvec2(1, 0);
+    CHECK(look(scene, wanted).texel->channels == glm::vec4(2.0F, 1.0F, 0.0F, 0.5F));
+    CHECK(ran("inspect-texel"));
+    CHECK_FALSE(ran("inspect-range"));
+    CHECK_FALSE(ran("inspect-histogram"));
+    wanted.mip = 1;
+    wanted.texel = glm::uvec2(99, 99);
+    CHECK(look(scene, wanted).texel == InspectedTexel{{3, 1}, {12.0F, 3.0F, 1.0F, 0.5F}, 4, {}});
+
+    scene.world.set(scene.camera, looking({0.0F, 3.0F, 0.0F}, {0, 0, 0}, {0, 0, -1}));
+    const InspectionResult depth = look(scene, {.resource = "depth", .texel = size / 2U});
+    REQUIRE(depth.texel);
+    REQUIRE(depth.texel->metres);
+    CHECK(std::abs(*depth.texel->metres - 3.0F) < 1e-4F);
+    CHECK(depth.texel->channel_count == 1);
+}
+
 TEST_CASE("the colours of a heat map become lighter with the value") {
     const auto decoded = [](float c) {
         return c <= 0.04045F ? c / 12.92F : std::pow((c + 0.055F) / 1.055F, 2.4F);

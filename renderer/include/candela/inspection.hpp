@@ -10,6 +10,7 @@
 
 #include <glm/vec2.hpp>
 #include <glm/vec3.hpp>
+#include <glm/vec4.hpp>
 
 #include <candela/api.hpp>
 #include <candela/view.hpp>
@@ -55,7 +56,19 @@ struct Inspection {
     /// None: the least and the greatest finite value; for colours, with 0.
     std::optional<ValueRange> range{};
     std::uint32_t longest = 1024;  ///< texels along the longer side of the picture, at most
+    /// Fills InspectionResult::texel: across and up, in the mip and layer; the last one if there are fewer.
+    /// Of light lists a tile.
+    std::optional<glm::uvec2> texel{};
     bool operator==(const Inspection&) const = default;
+};
+
+/// The values of a texel.
+struct InspectedTexel {
+    glm::uvec2 at{0};                 ///< across and up
+    glm::vec4 channels{0.0F};         ///< as stored; whole numbers above 2^24 are rounded
+    std::uint32_t channel_count = 1;  ///< that the format has
+    std::optional<float> metres{};    ///< of a depth whose unit is known; 0: there is no surface
+    bool operator==(const InspectedTexel&) const = default;
 };
 
 /// What the last frame shows of the inspected resource.
@@ -70,8 +83,18 @@ struct InspectionResult {
     Mapping mapping = Mapping::automatic;  ///< the one that was used
     float low = 0.0F;                      ///< the range that was used
     float high = 0.0F;
-    std::uint32_t mips = 0;    ///< that can be chosen; 0 without a picture
-    std::uint32_t layers = 0;  ///< layers, faces or slices that can be chosen
+    std::uint32_t mips = 0;        ///< that can be chosen; 0 without a picture
+    std::uint32_t layers = 0;      ///< layers, faces or slices that can be chosen
+    glm::uvec2 extent{0};          ///< texels of the mip, or pixels that the tiles of light lists cover
+    std::uint32_t texel_size = 1;  ///< pixels along the edge of a tile; 1 for textures
+    float least = 0.0F;            ///< finite value that is shown; 0 if there is none
+    float greatest = 0.0F;
+    std::uint32_t faulty = 0;  ///< texels with values that are infinite or no numbers; above 2^24 rounded
+    /// How many of the shown values are in each of 64 equal parts of the range: of red, green and blue if
+    /// these are shown, one list behind the other, else of a single channel. Of large textures, one texel in
+    /// several counts.
+    std::vector<std::uint32_t> histogram{};
+    std::optional<InspectedTexel> texel{};
 };
 
 /// How a number is stored.
@@ -120,8 +143,8 @@ class CANDELA_API ResourceInspector {
     [[nodiscard]] std::vector<std::string> show(std::optional<Inspection> wanted);
     [[nodiscard]] std::optional<Inspection> shown() const;
 
-    /// What the last frame shows. An automatic range is read back after frames in which it was found again;
-    /// this waits for the GPU.
+    /// What the last frame shows. Ranges, histogram and texel are read back after frames in which they were
+    /// found again; this waits for the GPU.
     [[nodiscard]] InspectionResult result() const;
 
     /// Reads elements of the resource back if it is a buffer, `most` of them from number `first` on, or fewer

@@ -6,7 +6,7 @@
 namespace candela {
 
 TextureHandle add_inspect(FrameGraph& graph, Gpu& gpu, const Inspected& inspected,
-                          ValueHandle<Inspection> settings, BufferHandle<glm::vec2> ranges) {
+                          ValueHandle<Inspection> settings, BufferHandle<glm::vec4> ranges) {
     constexpr std::uint32_t side = 8;  // of a work group, as in the shader
     return graph.add("inspect", [&](Pass& pass) {
         read_inspected(pass, inspected);

@@ -9,6 +9,6 @@ namespace candela {
 /// `ranges` unless the settings give a range. Values that are infinite or no numbers are magenta. Depends on
 /// the resource, the ranges and `settings`. Returns a flat texture of rgba8, with colours for the display.
 [[nodiscard]] TextureHandle add_inspect(FrameGraph& graph, Gpu& gpu, const Inspected& inspected,
-                                        ValueHandle<Inspection> settings, BufferHandle<glm::vec2> ranges);
+                                        ValueHandle<Inspection> settings, BufferHandle<glm::vec4> ranges);
 
 }  // namespace candela

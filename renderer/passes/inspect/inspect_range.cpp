@@ -6,18 +6,17 @@
 
 namespace candela {
 
-BufferHandle<glm::vec2> add_inspect_range(FrameGraph& graph, Gpu& gpu, const Inspected& inspected,
+BufferHandle<glm::vec4> add_inspect_range(FrameGraph& graph, Gpu& gpu, const Inspected& inspected,
                                           ValueHandle<Inspection> settings) {
     return graph.add("inspect-range", [&](Pass& pass) {
         read_inspected(pass, inspected);
         pass.read(settings);
         const gl::Program& program = inspecting_program(gpu, "inspect/inspect_range.comp", inspected);
-        const auto ranges = pass.write(growing_buffer<glm::vec2>(graph, "inspected ranges"),
+        const auto ranges = pass.write(growing_buffer<glm::vec4>(graph, "inspected ranges"),
                                        {Usage::storage, BINDING_INSPECTED_RANGES});
         pass.run([=, &gpu, &program](Execution& run) {
             const Shown shown = shown_of(run, inspected, run.value(settings));
-            if (shown.range) return;
-            run.reserve(ranges, shown.texels.y + 1);
+            run.reserve(ranges, shown.texels.y + 2);
             const InspectedTexels texels(gpu, run, inspected, shown);
             const gl::Uniforms common =
                 texels.uniforms() + gl::Uniforms{{"from_zero", shown.mapping == Mapping::colour}};
