@@ -3,6 +3,7 @@
 #include <GLFW/glfw3.h>
 
 #include <algorithm>
+#include <iterator>
 #include <string>
 #include <utility>
 #include <variant>
@@ -64,6 +65,11 @@ std::string_view verb_of(DragKind kind) {
         default:
             return "move ";
     }
+}
+
+bool is_move(DragKind kind) {
+    return kind == DragKind::move_in_plane || kind == DragKind::move_along_axis ||
+           kind == DragKind::move_over_surface;
 }
 
 /// The mode along or around this axis that does the same; the free one, if `present` is already that.
@@ -178,6 +184,7 @@ void Interaction::press(const InputEvent& event, const Viewport& viewport) {
     button_ = event.code;
     const bool left = event.code == GLFW_MOUSE_BUTTON_LEFT;
     const bool shift = (event.modifiers & GLFW_MOD_SHIFT) != 0;
+    toggles_ = (event.modifiers & GLFW_MOD_CONTROL) != 0;
     if (event.code == GLFW_MOUSE_BUTTON_MIDDLE || (left && shift)) {
         gesture_ = Panning();
     } else if (event.code == GLFW_MOUSE_BUTTON_RIGHT) {
@@ -188,13 +195,22 @@ void Interaction::press(const InputEvent& event, const Viewport& viewport) {
 }
 
 void Interaction::press_left(const Viewport& viewport) {
-    if (const std::optional<Gizmo> shown = gizmo(viewport)) {
+    const std::optional<Gizmo> shown = gizmo(viewport);
+    if (shown && !toggles_) {
         if (const auto handle = handle_at(*shown, pointer_, handle_radius * unit)) {
             return grab(*selected, shown->handles[*handle].mode, viewport);
         }
     }
     if (const auto light = pick(light_markers(*world_), viewport, pointer_, pick_radius * unit)) {
-        selected = light;
+        if (toggles_) return toggle(*light);
+        std::vector<Entity> all = all_selected();
+        const auto at = std::ranges::find(all, *light);
+        if (at == all.end()) {
+            selected = light;
+        } else {
+            std::rotate(all.begin(), at, at + 1);
+            select(all);
+        }
         return grab(*light, marker_mode(*light), viewport);
     }
     gesture_ = Orbiting{pointer_};
@@ -220,6 +236,10 @@ void Interaction::end_gesture() {
 void Interaction::click(const Viewport& viewport) {
     const std::optional<tools::SurfaceHit> hit = surfaces_.first_hit(ray_through(viewport, pointer_));
     if (!hit && surfaces_.building()) return;  // there may be something
+    if (toggles_) {
+        if (hit) toggle(hit->entity);
+        return;
+    }
     selected = hit ? std::optional(hit->entity) : std::nullopt;
 }
 
@@ -246,14 +266,32 @@ void Interaction::move(glm::vec2 position, const Viewport& viewport) {
 void Interaction::start(Dragging& dragging) {
     if (dragging.moved) return;
     const Entity entity = dragging.drag.entity();
-    history_.begin(*world_, std::string(verb_of(dragging.drag.mode().kind)) + name_of(*world_, entity),
-                   {entity});
+    const bool together = is_move(dragging.drag.mode().kind);
+    std::vector<Entity> moved{entity};
+    dragging.from = position_of(*world_, entity);
+    const std::vector<Entity> roots = selected_roots();
+    // What is below another selected one already moves with that.
+    if (together && std::ranges::count(roots, entity) > 0) {
+        for (const Entity other : roots) {
+            if (other == entity) continue;
+            moved.push_back(other);
+            dragging.others.emplace_back(other, position_of(*world_, other));
+        }
+    }
+    history_.begin(*world_, std::string(verb_of(dragging.drag.mode().kind)) + title_of(*world_, moved),
+                   moved);
     dragging.moved = true;
+}
+
+void Interaction::move_others(const Dragging& dragging) {
+    const glm::vec3 motion = position_of(*world_, dragging.drag.entity()) - dragging.from;
+    for (const auto& [entity, from] : dragging.others) move_to(*world_, entity, from + motion);
 }
 
 void Interaction::drag(Dragging& dragging, const Viewport& viewport) {
     start(dragging);
     dragging.drag.follow(*world_, viewport, pointer_, surfaces_, surface_gap * viewer_.scene_radius());
+    move_others(dragging);
 }
 
 void Interaction::scroll(float notches) {
@@ -267,6 +305,34 @@ void Interaction::scroll(float notches) {
 std::optional<Entity> Interaction::dragged() const {
     const auto* dragging = std::get_if<Dragging>(&gesture_);
     return dragging != nullptr ? std::optional(dragging->drag.entity()) : std::nullopt;
+}
+
+// The selection.
+
+std::vector<Entity> Interaction::all_selected() const {
+    std::vector<Entity> all;
+    if (!selected) return all;
+    all.push_back(*selected);
+    if (others_.first != *selected) return all;
+    std::ranges::copy_if(others_.entities, std::back_inserter(all),
+                         [&](Entity entity) { return is_present(*world_, entity); });
+    return all;
+}
+
+void Interaction::select(const std::vector<Entity>& entities) {
+    selected = entities.empty() ? std::nullopt : std::optional(entities.front());
+    others_ = {};
+    if (entities.size() > 1) others_ = {entities.front(), {entities.begin() + 1, entities.end()}};
+}
+
+void Interaction::toggle(Entity entity) {
+    std::vector<Entity> all = all_selected();
+    if (std::erase(all, entity) == 0) all.insert(all.begin(), entity);
+    select(all);
+}
+
+std::vector<Entity> Interaction::selected_roots() const {
+    return roots_of(*world_, all_selected());
 }
 
 // What is shown.
@@ -313,6 +379,10 @@ Overlay Interaction::overlay(const Viewport& viewport, bool pointer_here) const 
     const std::optional<Entity> hovered =
         over_picture ? pick(light_markers(*world_), viewport, pointer_, pick_radius * unit) : std::nullopt;
     overlay.lights = light_labels(*world_, viewport, surfaces_, hovered, selected);
+    for (const Entity other : all_selected()) {
+        if (other == selected || !has_place(*world_, other)) continue;
+        if (const auto at = project(viewport, position_of(*world_, other))) overlay.others.push_back(*at);
+    }
     return overlay;
 }
 
@@ -413,14 +483,20 @@ bool Interaction::cancel() {
 
 void Interaction::nudge_selected(int key, const Viewport& viewport) {
     if (!selected || dragged() || !is_present(*world_, *selected)) return;
-    EntityStates before = states_of(*world_, {*selected});
-    nudge(*world_, *selected, viewport, direction_of_key(key) * nudge_step * viewer_.scene_radius());
-    history_.record(*world_, "nudge " + name_of(*world_, *selected), std::move(before));
+    const std::vector<Entity> roots = selected_roots();
+    EntityStates before = states_of(*world_, roots);
+    for (const Entity entity : roots) {
+        nudge(*world_, entity, viewport, direction_of_key(key) * nudge_step * viewer_.scene_radius());
+    }
+    history_.record(*world_, "nudge " + title_of(*world_, roots), std::move(before));
 }
 
 void Interaction::select_touched(const std::vector<Entity>& touched) {
     if (touched.empty()) return;
-    selected = is_present(*world_, touched.front()) ? std::optional(touched.front()) : std::nullopt;
+    std::vector<Entity> present;
+    std::ranges::copy_if(touched, std::back_inserter(present),
+                         [&](Entity entity) { return is_present(*world_, entity); });
+    select(roots_of(*world_, present));
 }
 
 void Interaction::add(const AnyLight& light) {
@@ -433,11 +509,19 @@ void Interaction::add(const AnyLight& light) {
     selected = add_light(*world_, history_, light, place.position, place.direction, 0.5F * radius);
 }
 
-/// Beside the original as the viewer sees it: to the right, unless only the left is still in the picture.
+/// Beside the originals as the viewer sees them: to the right, unless only the left is still in the picture.
 void Interaction::copy_selected() {
     if (!selected || !is_present(*world_, *selected)) return;
+    const std::vector<Entity> roots = selected_roots();
+    Box box;
+    for (const Entity entity : roots) {
+        const Box own = box_of(*world_, family_of(*world_, entity));
+        if (own.lower.x > own.upper.x) continue;
+        box.grow(own.lower);
+        box.grow(own.upper);
+    }
     const glm::vec3 right = viewer_.orbit().rotation * glm::vec3(1.0F, 0.0F, 0.0F);
-    const float width = width_along(box_of(*world_, family_of(*world_, *selected)), right);
+    const float width = width_along(box, right);
     constexpr float with_gap = 1.1F;
     const float offset = width > 0.0F ? with_gap * width : copy_offset * viewer_.scene_radius();
     const auto is_seen = [&](const glm::vec3& centre) {
@@ -446,12 +530,12 @@ void Interaction::copy_selected() {
     };
     const glm::vec3 centre = centre_of(*selected);
     const bool left = !is_seen(centre + offset * right) && is_seen(centre - offset * right);
-    selected = duplicate(*world_, history_, *selected, (left ? -offset : offset) * right);
+    select(duplicate(*world_, history_, roots, (left ? -offset : offset) * right));
 }
 
 void Interaction::remove_selected() {
     if (!selected || !is_present(*world_, *selected)) return;
-    remove(*world_, history_, *selected);
+    remove(*world_, history_, all_selected());
     selected.reset();
 }
 

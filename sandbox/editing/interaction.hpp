@@ -3,6 +3,7 @@
 #include <cstddef>
 #include <optional>
 #include <string_view>
+#include <utility>
 #include <variant>
 #include <vector>
 
@@ -34,13 +35,15 @@ struct Overlay {
     std::vector<LightLabel> lights;
     std::optional<Gizmo> gizmo;
     std::optional<std::size_t> active;  ///< the handle of the gizmo that is hovered or dragged
+    std::vector<glm::vec2> others;      ///< window positions of what is selected besides
 };
 
 /// Turns input into changes of the world: moves the viewer's camera; selects, drags, adds, copies and deletes
 /// lights and objects; undoes and redoes that.
 ///
 /// A press on a handle of the gizmo or on the marker of a light grabs it. A press elsewhere orbits, if the
-/// pointer moves; otherwise it is a click, which selects the surface there, or nothing.
+/// pointer moves; otherwise it is a click, which selects the surface there, or nothing. With Ctrl, lights and
+/// surfaces are selected besides others, or no more.
 class Interaction {
  public:
     /// Adds the viewer's camera to the world and starts at the view of `camera`. Keeps a reference to the
@@ -78,7 +81,14 @@ class Interaction {
     /// Waits until clicks find all surfaces.
     void wait_for_surfaces() { surfaces_.update_and_wait(*world_); }
 
-    std::optional<Entity> selected;  ///< a light or an object
+    /// Whatever is selected, `selected` first: lights and objects that are moved, copied and deleted
+    /// together.
+    [[nodiscard]] std::vector<Entity> all_selected() const;
+    /// Selects it besides the others, or no more.
+    void toggle(Entity entity);
+
+    /// A light or an object, to which the tools belong. Setting it to another one selects that alone.
+    std::optional<Entity> selected;
     Tool tool = Tool::move;
     float unit = 1.0F;  ///< window coordinates per unit of the user interface
 
@@ -99,6 +109,13 @@ class Interaction {
         Drag drag;
         glm::vec2 pressed_at;
         bool moved = false;
+        glm::vec3 from{0.0F};                                ///< where the dragged entity was
+        std::vector<std::pair<Entity, glm::vec3>> others{};  ///< that move along, and where they were
+    };
+    /// What is selected besides `first`, if that is still `selected`.
+    struct Others {
+        Entity first;
+        std::vector<Entity> entities;
     };
 
     void find_enclosed();
@@ -112,6 +129,9 @@ class Interaction {
     void grab(Entity entity, DragMode mode, const Viewport& viewport);
     void drag(Dragging& dragging, const Viewport& viewport);
     void start(Dragging& dragging);
+    void move_others(const Dragging& dragging);
+    void select(const std::vector<Entity>& entities);
+    [[nodiscard]] std::vector<Entity> selected_roots() const;
     void constrain(int axis);
     void click(const Viewport& viewport);
     void end_gesture();
@@ -139,7 +159,9 @@ class Interaction {
     glm::vec2 size_{1.0F};
     glm::vec2 origin_{0.0F};
     glm::vec2 pointer_{0.0F};
-    int button_ = 0;  ///< that began the gesture
+    int button_ = 0;        ///< that began the gesture
+    bool toggles_ = false;  ///< the gesture began with Ctrl
+    Others others_;
     std::variant<std::monostate, Orbiting, Panning, Looking, Dragging> gesture_;
 };
 

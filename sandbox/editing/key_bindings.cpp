@@ -77,6 +77,7 @@ constexpr std::array bindings{
 constexpr std::array mouse{
     MouseHelp{"left, dragged", "move a light or a handle of the selection; elsewhere, orbit"},
     MouseHelp{"left, clicked", "select a light or an object; nothing there: deselect"},
+    MouseHelp{"Ctrl and left, clicked", "select it besides others, or no more"},
     MouseHelp{"middle, or Shift and left", "pan"},
     MouseHelp{"right", "look around"},
     MouseHelp{"wheel", "nearer or farther; while flying: faster or slower"}};

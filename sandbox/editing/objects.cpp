@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cctype>
+#include <iterator>
 #include <map>
 #include <set>
 #include <variant>
@@ -94,15 +95,38 @@ Entity add_light(World& world, History& history, const AnyLight& light, const gl
     return entity;
 }
 
-Entity duplicate(World& world, History& history, Entity entity, const glm::vec3& offset) {
-    const std::vector<Entity> originals = family_of(world, entity);
+std::string title_of(const World& world, std::span<const Entity> entities) {
+    if (entities.size() == 1) return name_of(world, entities.front());
+    return fmt::format("{} objects", entities.size());
+}
+
+std::vector<Entity> roots_of(const World& world, std::span<const Entity> entities) {
+    const std::set<Entity> all(entities.begin(), entities.end());
+    const auto parent_of = [&](Entity entity) { return transform_of(world, entity).parent; };
+    const auto is_below = [&](Entity entity) {
+        std::set<Entity> passed{entity};  // parents may form a cycle
+        for (Entity at = parent_of(entity); at && passed.insert(at).second; at = parent_of(at)) {
+            if (all.contains(at)) return true;
+        }
+        return false;
+    };
+    std::vector<Entity> roots;
+    std::ranges::copy_if(entities, std::back_inserter(roots),
+                         [&](Entity entity) { return !is_below(entity); });
+    return roots;
+}
+
+std::vector<Entity> duplicate(World& world, History& history, std::span<const Entity> entities,
+                              const glm::vec3& offset) {
     std::map<Entity, Entity> copies;
     std::vector<Entity> created;
-    for (const Entity original : originals) {
-        created.push_back(world.create());
-        copies[original] = created.back();
+    for (const Entity entity : entities) {
+        for (const Entity original : family_of(world, entity)) {
+            created.push_back(world.create());
+            copies[original] = created.back();
+        }
     }
-    history.begin(world, "copy " + name_of(world, entity), created);
+    history.begin(world, "copy " + title_of(world, entities), created);
     for (const auto& [original, copy] : copies) {
         EntityState state = state_of(world, original);
         if (state.name) state.name = Name{unique_name(world, state.name->value)};
@@ -111,18 +135,32 @@ Entity duplicate(World& world, History& history, Entity entity, const glm::vec3&
         }
         set_state(world, copy, state);
     }
-    const Entity copy = copies.at(entity);
-    move_to(world, copy, position_of(world, copy) + offset);
+    std::vector<Entity> of_entities;
+    for (const Entity entity : entities) {
+        const Entity copy = copies.at(entity);
+        move_to(world, copy, position_of(world, copy) + offset);
+        of_entities.push_back(copy);
+    }
     history.commit(world);
-    return copy;
+    return of_entities;
+}
+
+Entity duplicate(World& world, History& history, Entity entity, const glm::vec3& offset) {
+    return duplicate(world, history, std::span(&entity, 1), offset).front();
+}
+
+void remove(World& world, History& history, std::span<const Entity> entities) {
+    history.begin(world, "delete " + title_of(world, entities), {entities.begin(), entities.end()});
+    for (const Entity entity : entities) {
+        EntityState rest;
+        if (has_children(world, entity)) rest.transform = transform_of(world, entity);
+        set_state(world, entity, rest);
+    }
+    history.commit(world);
 }
 
 void remove(World& world, History& history, Entity entity) {
-    history.begin(world, "delete " + name_of(world, entity), {entity});
-    EntityState rest;
-    if (has_children(world, entity)) rest.transform = transform_of(world, entity);
-    set_state(world, entity, rest);
-    history.commit(world);
+    remove(world, history, std::span(&entity, 1));
 }
 
 }  // namespace candela::sandbox

@@ -1,6 +1,8 @@
 #pragma once
 
+#include <span>
 #include <string>
+#include <vector>
 
 #include <glm/vec3.hpp>
 
@@ -31,10 +33,20 @@ namespace candela::sandbox {
 Entity add_light(World& world, History& history, const AnyLight& light, const glm::vec3& position,
                  const glm::vec3& direction, float reach);
 
-/// Copies an entity with everything below it, and moves the copy by `offset` (metres, world space).
+/// What the user is told that these are: the name of a single one, else for example "3 objects".
+[[nodiscard]] std::string title_of(const World& world, std::span<const Entity> entities);
+
+/// Those of the entities that are not below another one of them, in the same order.
+[[nodiscard]] std::vector<Entity> roots_of(const World& world, std::span<const Entity> entities);
+
+/// Copies entities, none of which is below another one, with everything below them, and moves the copies by
+/// `offset` (metres, world space). Returns the copies of the entities.
+std::vector<Entity> duplicate(World& world, History& history, std::span<const Entity> entities,
+                              const glm::vec3& offset);
 Entity duplicate(World& world, History& history, Entity entity, const glm::vec3& offset);
 
-/// Removes the entity's components. One with children keeps its transform, so that they stay in place.
+/// Removes the entities' components. One with children keeps its transform, so that they stay in place.
+void remove(World& world, History& history, std::span<const Entity> entities);
 void remove(World& world, History& history, Entity entity);
 
 }  // namespace candela::sandbox

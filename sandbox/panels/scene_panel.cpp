@@ -4,8 +4,10 @@
 #include <cmath>
 #include <limits>
 #include <optional>
+#include <span>
 #include <string>
 #include <utility>
+#include <vector>
 
 #include <fmt/format.h>
 #include <imgui.h>
@@ -73,21 +75,63 @@ void draw_cameras(const World& world, Interaction& interaction) {
     ImGui::EndCombo();
 }
 
-void list_entity(const World& world, Entity entity, std::optional<Entity>& selected) {
-    ImGui::PushID(static_cast<int>(entity.index));
-    if (ImGui::Selectable(name_of(world, entity).c_str(), selected == entity)) selected = entity;
-    note_control(name_of(world, entity), nullptr);
+std::size_t selected_count(const Interaction& interaction) {
+    return interaction.all_selected().size();
+}
+
+void draw_row(const ObjectRow& row, Interaction& interaction, std::span<const Entity> selected) {
+    ImGui::PushID(static_cast<int>(row.entity.index));
+    const float indent = static_cast<float>(row.depth) * ImGui::GetFontSize();
+    if (indent > 0.0F) ImGui::Indent(indent);
+    const bool is_selected = std::ranges::count(selected, row.entity) > 0;
+    // A name may have the signs that separate labels from what only identifies them.
+    if (ImGui::Selectable("##row", is_selected)) {
+        if (ImGui::GetIO().KeyCtrl) {
+            interaction.toggle(row.entity);
+        } else {
+            interaction.selected = row.entity;
+        }
+    }
+    note_control(row.name, nullptr);
+    ImGui::SameLine(0.0F, 0.0F);
+    text(row.name);
+    ImGui::SameLine();
+    ImGui::TextDisabled("%s", std::string(row.kind).c_str());
+    if (indent > 0.0F) ImGui::Unindent(indent);
     ImGui::PopID();
 }
 
-void draw_selection(const World& world, std::optional<Entity>& selected) {
-    const bool open = ImGui::BeginCombo("selected", selected ? name_of(world, *selected).c_str() : "nothing");
-    note_control("selected", "a light or an object; or click on it in the picture");
-    if (!open) return;
-    visit_lights(world, [&](Entity entity, const auto& /*light*/) { list_entity(world, entity, selected); });
-    ImGui::Separator();
-    for (auto [entity, mesh] : world.view<MeshInstance>()) list_entity(world, entity, selected);
-    ImGui::EndCombo();
+void draw_objects(Document& document) {
+    if (!header("Objects", true)) return;
+    Interaction& interaction = document.interaction;
+    ImGui::SetNextItemWidth(-4.0F * ImGui::GetFontSize());
+    ImGui::InputText("find", &document.objects.find);
+    note_control(
+        "find",
+        "lights and objects whose names have this; a click on one selects it, as in the picture, with "
+        "Ctrl besides the others");
+    constexpr int most_lines = 9;
+    const std::vector<ObjectRow>& rows = document.objects.rows(document.scene.world);
+    const int lines = std::clamp(static_cast<int>(rows.size()), 1, most_lines);
+    const float height = ImGui::GetTextLineHeightWithSpacing() * static_cast<float>(lines) +
+                         2.0F * ImGui::GetStyle().WindowPadding.y;
+    if (ImGui::BeginChild("objects", {0.0F, height}, true)) {
+        if (rows.empty()) ImGui::TextDisabled("nothing of this name");
+        const std::vector<Entity> selected = interaction.all_selected();
+        ImGuiListClipper clipper;
+        clipper.Begin(static_cast<int>(rows.size()));
+        while (clipper.Step()) {
+            for (int i = clipper.DisplayStart; i < clipper.DisplayEnd; ++i) {
+                draw_row(rows[static_cast<std::size_t>(i)], interaction, selected);
+            }
+        }
+    }
+    ImGui::EndChild();
+    note_control("objects", "a click selects, also in the picture; with Ctrl, besides the others");
+    if (selected_count(interaction) > 1) {
+        text(fmt::format("{} are selected, and moved, copied and deleted together",
+                         selected_count(interaction)));
+    }
 }
 
 void draw_lights_to_add(Interaction& interaction) {
@@ -370,7 +414,7 @@ std::vector<Action> draw_scene_panel(Document& document, const AppState& state, 
     draw_cameras(world, document.interaction);
     ImGui::Separator();
     draw_lights_to_add(document.interaction);
-    draw_selection(world, document.interaction.selected);
+    draw_objects(document);
     draw_selected(document, wanted);
     document.material_edit.apply(document.scene.world, document.interaction.history(),
                                  !ImGui::IsAnyItemActive());

@@ -9,6 +9,7 @@
 #include "sandbox/command_line/options.hpp"
 #include "sandbox/editing/interaction.hpp"
 #include "sandbox/editing/materials.hpp"
+#include "sandbox/editing/object_tree.hpp"
 #include "sandbox/scene/scene.hpp"
 
 namespace candela::sandbox {
@@ -17,6 +18,7 @@ namespace candela::sandbox {
 struct Document {
     Scene scene;
     Interaction interaction;
+    ObjectTree objects;
     std::optional<Playback> playback;      ///< of a script
     ClipPlayback clips;                    ///< of the scene's file
     MaterialEdit material_edit;            ///< of a control that is held

@@ -342,6 +342,69 @@ TEST_CASE("a light that is moved into an object is found there, until it is out 
     user.interaction.step(0.0F, size, origin);
     CHECK(user.interaction.enclosed().empty());
 }
+
+TEST_CASE("several objects are selected with Ctrl, and moved, copied and deleted as one step each") {
+    User user;
+    const Entity lamp = add_point_light(user.world, {-1.5F, 0.5F, 0.5F});
+    user.click(user.seen({0.0F, 0.4F, 0.5F}));
+    const auto with_control = [&](glm::vec2 at) {
+        user.press(at, GLFW_MOUSE_BUTTON_LEFT, GLFW_MOD_CONTROL);
+        user.release();
+    };
+    with_control(user.seen(user.light));
+    with_control(user.seen(lamp));
+    CHECK(user.interaction.all_selected() == std::vector<Entity>{lamp, user.light, user.box});
+    with_control(user.seen(lamp));
+    CHECK(user.interaction.all_selected() == std::vector<Entity>{user.light, user.box});
+    CHECK(user.interaction.history().undo_count() == 0);
+
+    // A drag of one of them moves both by the same, in one step.
+    const glm::vec3 light = position_of(user.world, user.light);
+    user.press(user.seen(user.light));
+    user.move(user.seen(light + glm::vec3(0.5F, 0.0F, 0.0F)));
+    user.release();
+    CHECK(glm::distance(position_of(user.world, user.light), light + glm::vec3(0.5F, 0.0F, 0.0F)) <
+          tolerance_world);
+    CHECK(glm::distance(position_of(user.world, user.box), {0.5F, 0.0F, 0.0F}) < tolerance_world);
+    CHECK(user.interaction.history().undo_name() == "move 2 objects");
+    user.undo();
+    CHECK(position_of(user.world, user.light) == light);
+    CHECK(position_of(user.world, user.box) == glm::vec3(0.0F));
+    CHECK(user.interaction.all_selected() == std::vector<Entity>{user.light, user.box});
+
+    user.key(GLFW_KEY_D, GLFW_MOD_CONTROL);
+    const std::vector<Entity> copies = user.interaction.all_selected();
+    REQUIRE(copies.size() == 2);
+    CHECK(is_light(user.world, copies[0]));
+    CHECK(user.world.has<MeshInstance>(copies[1]));
+    CHECK(glm::distance(position_of(user.world, copies[0]) - light, position_of(user.world, copies[1])) <
+          tolerance_world);
+    user.key(GLFW_KEY_DELETE);
+    CHECK_FALSE(is_present(user.world, copies[0]));
+    CHECK_FALSE(is_present(user.world, copies[1]));
+    user.undo();
+    CHECK(user.interaction.all_selected() == copies);
+    user.undo();
+    CHECK_FALSE(is_present(user.world, copies[1]));
+    CHECK(user.interaction.history().undo_count() == 0);
+
+    // A click without Ctrl selects one alone.
+    user.click(user.seen({0.0F, 0.4F, 0.5F}));
+    CHECK(user.interaction.all_selected() == std::vector<Entity>{user.box});
+}
+
+TEST_CASE("what stands on another selected object moves once, not twice") {
+    User user;
+    const Entity on_box = add_point_light(user.world, {0.0F, 1.0F, 0.0F}, user.box);
+    user.interaction.selected = user.box;
+    user.interaction.toggle(on_box);
+    user.key(GLFW_KEY_RIGHT);
+    const glm::vec3 moved = position_of(user.world, user.box);
+    CHECK(moved.x > 0.0F);
+    CHECK(glm::distance(position_of(user.world, on_box), moved + glm::vec3(0.0F, 1.0F, 0.0F)) < 1e-6F);
+    user.undo();
+    CHECK(position_of(user.world, user.box) == glm::vec3(0.0F));
+}
 }  // TEST_SUITE("interaction")
 
 }  // namespace candela::sandbox
