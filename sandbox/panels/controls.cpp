@@ -61,9 +61,12 @@ bool begin_tab(const char* label, const char* tip) {
     note_place(label);
     if (!ImGui::IsItemHovered()) return open;
     const float edge = ImGui::GetWindowPos().x;
-    const float gap = ImGui::GetStyle().WindowPadding.x;
-    ImGui::SetNextWindowPos({edge, ImGui::GetItemRectMin().y}, ImGuiCond_Always, {1.0F, 0.0F});
-    draw_tip(tip, std::min(tip_width(), std::max(edge - 4.0F * gap, 1.0F)));
+    const float padding = ImGui::GetStyle().WindowPadding.x;
+    const float width = std::min(tip_width(), std::max(edge - 4.0F * padding, 1.0F));
+    // Its size is only known a frame after it is first drawn, and no other frame may follow.
+    const float needed = ImGui::CalcTextSize(tip, nullptr, false, width).x + 2.0F * padding;
+    ImGui::SetNextWindowPos({edge - needed - padding, ImGui::GetItemRectMin().y});
+    draw_tip(tip, width);
     return open;
 }
 

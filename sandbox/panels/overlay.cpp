@@ -6,6 +6,7 @@
 #include <utility>
 
 #include <fmt/format.h>
+#include <glm/common.hpp>
 
 #include "sandbox/panels/controls.hpp"
 
@@ -93,6 +94,13 @@ void draw_lights(const std::vector<LightLabel>& lights) {
     }
 }
 
+void draw_rings(const std::vector<glm::vec2>& positions) {
+    const float unit = ImGui::GetFontSize() / 14.0F;
+    for (const glm::vec2& at : positions) {
+        draw_ring(*ImGui::GetBackgroundDrawList(), {at.x, at.y}, 9.0F * unit, 1.5F * unit);
+    }
+}
+
 void draw_gizmo(const Gizmo& gizmo, std::optional<std::size_t> active) {
     constexpr std::array axis_colours{IM_COL32(235, 80, 80, 255), IM_COL32(90, 200, 90, 255),
                                       IM_COL32(90, 140, 255, 255)};
@@ -141,6 +149,20 @@ void draw_comparison(Comparison& comparison, const SideLabels& labels, const Rec
     list.PushClipRect({x, corner.y}, end, true);
     draw_label(list, {x + gap, corner.y + gap}, labels.b);
     list.PopClipRect();
+}
+
+std::string words_of(const ProbedPixel& pixel) {
+    const glm::vec3 bytes = glm::round(255.0F * pixel.colour);
+    return fmt::format("pixel {}, {}: radiance {:.4g} {:.4g} {:.4g}, colour {:.0f} {:.0f} {:.0f}", pixel.at.x,
+                       pixel.at.y, pixel.radiance.r, pixel.radiance.g, pixel.radiance.b, bytes.r, bytes.g,
+                       bytes.b);
+}
+
+void draw_probe(const std::string& words, const Rectangle& scene) {
+    const ImVec2 pointer = ImGui::GetIO().MousePos;
+    const float gap = ImGui::GetFontSize();
+    const float edge = scene.corner.x + scene.size.x - ImGui::CalcTextSize(words.c_str()).x - gap;
+    draw_label(*ImGui::GetBackgroundDrawList(), {std::min(pointer.x + gap, edge), pointer.y + gap}, words);
 }
 
 void draw_messages(const std::vector<std::string>& errors, const std::string& notice,

@@ -67,12 +67,24 @@ void draw_settings(Configuration& configuration) {
     });
 }
 
+void draw_noise_limit(double& limit) {
+    constexpr float most = 100.0F;
+    auto percent = static_cast<float>(100.0 * limit);
+    if (drag("end refinement at noise, %", percent, 0.01F, 0.0F, most,
+             "of the picture's mean radiance: refinement ends when the estimated noise of a pixel falls to "
+             "it, "
+             "or after the number of frames; 0: only then")) {
+        limit = static_cast<double>(percent) / 100.0;
+    }
+}
+
 }  // namespace
 
-void draw_quality_panel(Configuration& configuration, const Quality& present) {
+void draw_quality_panel(Configuration& configuration, double& noise_limit, const Quality& present) {
     draw_presets(configuration);
     ImGui::Separator();
     draw_settings(configuration);
+    if (configuration.refinement.enabled) draw_noise_limit(noise_limit);
     text(fmt::format("now: {:.0f} % of the sides, one in {} VPLs a pixel", 100.0F * present.scale,
                      present.interleave * present.interleave));
 }

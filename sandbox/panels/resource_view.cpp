@@ -2,9 +2,11 @@
 
 #include <algorithm>
 #include <array>
+#include <cmath>
 #include <string_view>
 
 #include <fmt/format.h>
+#include <glm/common.hpp>
 
 #include "sandbox/panels/controls.hpp"
 #include "sandbox/window/gui.hpp"
@@ -37,11 +39,49 @@ void choose(const char* label, Enum& value, const std::array<Enum, N>& choices, 
 }
 
 /// As large as possible with the picture's proportions.
-void draw_fitted(const InspectionResult& result, const Rectangle& space) {
+Rectangle fitted(const InspectionResult& result, const Rectangle& space) {
     const glm::vec2 size(result.size);
     const float factor = std::min(space.size.x / size.x, space.size.y / size.y);
-    const glm::vec2 corner = space.corner + 0.5F * (space.size - factor * size);
-    draw_picture(result.texture, {corner, factor * size});
+    return {space.corner + 0.5F * (space.size - factor * size), factor * size};
+}
+
+/// The bars of the channels over each other, as high as the root of their share of the highest: few values
+/// are seen beside many.
+void draw_histogram(const InspectionResult& result) {
+    constexpr std::size_t bins = 64;
+    constexpr std::array colours{IM_COL32(230, 90, 90, 150), IM_COL32(90, 200, 90, 150),
+                                 IM_COL32(100, 140, 255, 150)};
+    const std::size_t channels = result.histogram.size() / bins;
+    const std::uint32_t most = channels == 0 ? 0 : std::ranges::max(result.histogram);
+    const ImVec2 corner = ImGui::GetCursorScreenPos();
+    const float width = 18.0F * ImGui::GetFontSize() / bins;
+    const float height = 4.0F * ImGui::GetFontSize();
+    ImDrawList& list = *ImGui::GetWindowDrawList();
+    list.AddRectFilled(corner, {corner.x + width * bins, corner.y + height}, IM_COL32(0, 0, 0, 120));
+    for (std::size_t channel = 0; channel < channels && most > 0; ++channel) {
+        const ImU32 colour = channels == 1 ? IM_COL32(200, 200, 200, 255) : colours.at(channel);
+        for (std::size_t bin = 0; bin < bins; ++bin) {
+            const auto count = static_cast<float>(result.histogram[channel * bins + bin]);
+            const float left = corner.x + width * static_cast<float>(bin);
+            const float top = height * (1.0F - std::sqrt(count / static_cast<float>(most)));
+            list.AddRectFilled({left, corner.y + top}, {left + width, corner.y + height}, colour);
+        }
+    }
+    ImGui::Dummy({width * bins, height});
+    note_control("histogram",
+                 "how often the values are in each of 64 parts of the range; a bar half as high stands for a "
+                 "quarter as many");
+    const std::string unit = result.unit.empty() ? "" : fmt::format(" {}", result.unit);
+    text(fmt::format("values: {:.4g} to {:.4g}{}", result.least, result.greatest, unit));
+    if (result.faulty > 0) {
+        ImGui::TextColored({1.0F, 0.4F, 1.0F, 1.0F}, "%u texels have infinite values or no numbers",
+                           result.faulty);
+    }
+}
+
+void draw_texel(const InspectionResult& result) {
+    if (!result.texel) return ImGui::TextDisabled("point at a texel to see its values");
+    text(words_of(*result.texel, result.unit));
 }
 
 void draw_range(Inspection& inspection, const InspectionResult& result) {
@@ -92,6 +132,8 @@ void draw_texture_controls(Inspection& inspection, const InspectionResult& resul
            "which of the texture's channels are shown");
     draw_range(inspection, result);
     if (result.mapping == Mapping::heat) draw_ramp(result);
+    draw_histogram(result);
+    draw_texel(result);
 }
 
 /// A table with a line for each element that was read, and a column for each field.
@@ -129,6 +171,24 @@ void draw_elements(const BufferElements& elements) {
 
 }  // namespace
 
+std::optional<glm::uvec2> texel_at(const InspectionResult& result, const Rectangle& picture,
+                                   glm::vec2 pointer) {
+    if (!picture.contains(pointer) || result.texel_size == 0) return std::nullopt;
+    glm::vec2 share = (pointer - picture.corner) / picture.size;
+    share.y = 1.0F - share.y;  // the bottom row is the first
+    const glm::vec2 place = glm::max(share * glm::vec2(result.extent), glm::vec2(0.0F));
+    return glm::min(glm::uvec2(place), glm::max(result.extent, 1U) - 1U) / result.texel_size;
+}
+
+std::string words_of(const InspectedTexel& texel, std::string_view unit) {
+    std::string words = fmt::format("texel {}, {}:", texel.at.x, texel.at.y);
+    for (std::uint32_t i = 0; i < std::min(texel.channel_count, 4U); ++i) {
+        words += fmt::format(" {:.5g}", texel.channels[static_cast<glm::length_t>(i)]);
+    }
+    if (!texel.metres) return unit.empty() ? words : fmt::format("{} {}", words, unit);
+    return *texel.metres > 0.0F ? fmt::format("{}, {:.4g} m", words, *texel.metres) : words + ", no surface";
+}
+
 std::string words_of(const BufferElements& elements, const ElementField& field, std::size_t index) {
     const bool is_whole = field.type == NumberType::uint32 || field.type == NumberType::int32;
     std::string words;
@@ -141,7 +201,14 @@ std::string words_of(const BufferElements& elements, const ElementField& field, 
 
 void draw_resource(const std::string& name, Inspection& inspection, const InspectionResult& result,
                    const BufferElements& elements, const Rectangle& scene) {
-    if (result.texture != 0) draw_fitted(result, scene);
+    if (result.texture != 0) {
+        const Rectangle picture = fitted(result, scene);
+        draw_picture(result.texture, picture);
+        const ImGuiIO& io = ImGui::GetIO();
+        // Beside the picture the last values stay.
+        const auto pointed = texel_at(result, picture, {io.MousePos.x, io.MousePos.y});
+        if (pointed && !io.WantCaptureMouse) inspection.texel = pointed;
+    }
     const float inset = 0.6F * ImGui::GetFontSize();
     const bool is_buffer = result.texture == 0 && elements.count > 0;
     ImGui::SetNextWindowPos({scene.corner.x + inset, scene.corner.y + inset});

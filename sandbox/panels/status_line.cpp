@@ -38,6 +38,8 @@ std::string to_words(const Status& status) {
         words += fmt::format(" · {:.0f} % of the sides while moving", 100.0F * status.quality.scale);
     }
     if (status.to_refine > 0) words += fmt::format(" · refined {}/{}", status.refined, status.to_refine);
+    if (status.to_refine > 0 && status.noise)
+        words += fmt::format(" · noise {:.2g} %", 100.0 * *status.noise);
     if (status.settled) words += " · done";
     return words;
 }

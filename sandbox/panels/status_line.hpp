@@ -1,6 +1,7 @@
 #pragma once
 
 #include <cstdint>
+#include <optional>
 #include <string>
 
 #include <candela/configuration.hpp>
@@ -14,8 +15,9 @@ struct Status {
     double frame_ms = 0.0;  ///< of the last frame in which more than the target was drawn
     double mean_ms = 0.0;
     std::uint32_t vpls = 0;
-    std::uint32_t refined = 0;    ///< frames that the picture averages
-    std::uint32_t to_refine = 0;  ///< frames that it will average; 0: refinement is off
+    std::uint32_t refined = 0;      ///< frames that the picture averages
+    std::uint32_t to_refine = 0;    ///< frames that it will average; 0: refinement is off
+    std::optional<double> noise{};  ///< of the picture, relative
     Quality quality{};
     bool settled = false;
     std::string warning;  ///< why the picture may not be as wanted; empty: for no reason

@@ -86,7 +86,11 @@ void draw_view_panel(AppState& state, const Report* report, const ReferenceView&
     Show& show = state.configuration.show;
     show = static_cast<Show>(choose(choices_of(show), static_cast<std::size_t>(show), nullptr));
     checkbox("VPLs as dots", state.vpls,
-             "each in the colour of its flux, with its normal; point at one to see its values");
+             "each in the colour of its flux, with its normal; point at one to see its values, click on it "
+             "to see its lights "
+             "and its neighbours");
+    checkbox("values under the pointer", state.probe,
+             "the radiance and the colour of the picture's pixel there");
     checkbox("estimate their error", state.estimate_error,
              "from another set of as many VPLs, which takes time whenever something moves");
     if (state.estimate_error && report != nullptr && report->vpls && report->vpls->estimated_error) {

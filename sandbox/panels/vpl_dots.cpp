@@ -12,6 +12,9 @@
 #include <glm/geometric.hpp>
 #include <glm/gtc/constants.hpp>
 
+#include "sandbox/panels/controls.hpp"
+#include "sandbox/panels/vpl_details.hpp"
+
 namespace candela::sandbox {
 
 namespace {
@@ -66,9 +69,21 @@ void tell_values(const VplDot& dot, std::size_t index) {
         static_cast<double>(dot.area));
 }
 
+void draw_neighbours(ImDrawList& list, const std::vector<VplDot>& dots, std::size_t chosen,
+                     const Viewport& viewport) {
+    constexpr std::size_t most = 6;
+    draw_cell(list, dots[chosen], viewport);
+    const auto from = on_screen(viewport, dots[chosen].position);
+    for (const NearVpl& other : nearest_vpls(dots, chosen, most)) {
+        const auto to = on_screen(viewport, dots[other.index].position);
+        if (from && to) list.AddLine(*from, *to, IM_COL32(110, 190, 255, 200), 1.5F);
+    }
+}
+
 }  // namespace
 
-void draw_vpl_dots(const std::vector<VplDot>& dots, const Viewport& viewport, const IsVisible& is_visible) {
+void draw_vpl_dots(const std::vector<VplDot>& dots, const Viewport& viewport, const IsVisible& is_visible,
+                   std::optional<glm::vec3>& chosen) {
     constexpr float lift =
         1e-3F;  // metres above the surface, so that the surface itself does not hide the dot
     const float unit = ImGui::GetFontSize() / 14.0F;
@@ -90,9 +105,26 @@ void draw_vpl_dots(const std::vector<VplDot>& dots, const Viewport& viewport, co
         nearest = distance;
         hovered = &dot;
     }
+    if (chosen && !dots.empty()) draw_neighbours(list, dots, *vpl_at(dots, *chosen), viewport);
     if (hovered == nullptr || ImGui::GetIO().WantCaptureMouse) return;
     draw_cell(list, *hovered, viewport);
-    tell_values(*hovered, static_cast<std::size_t>(hovered - dots.data()));
+    const auto index = static_cast<std::size_t>(hovered - dots.data());
+    tell_values(*hovered, index);
+    if (ImGui::IsMouseClicked(ImGuiMouseButton_Left)) chosen = hovered->position;
+}
+
+void draw_vpl_details(std::size_t index, const std::string& words, std::optional<glm::vec3>& chosen,
+                      const Rectangle& scene) {
+    const float inset = 0.6F * ImGui::GetFontSize();
+    ImGui::SetNextWindowPos({scene.corner.x + inset, scene.corner.y + inset}, ImGuiCond_Appearing);
+    ImGui::SetNextWindowBgAlpha(0.85F);
+    bool stays = true;
+    constexpr ImGuiWindowFlags fitted = ImGuiWindowFlags_NoSavedSettings | ImGuiWindowFlags_AlwaysAutoResize |
+                                        ImGuiWindowFlags_NoCollapse | ImGuiWindowFlags_NoFocusOnAppearing;
+    const std::string title = fmt::format("VPL {}###vpl", index);
+    if (ImGui::Begin(title.c_str(), &stays, fitted)) text(words);
+    ImGui::End();
+    if (!stays) chosen.reset();
 }
 
 }  // namespace candela::sandbox

@@ -5,6 +5,9 @@
 #include <string>
 #include <vector>
 
+#include <glm/vec2.hpp>
+#include <glm/vec3.hpp>
+
 #include <candela/configuration.hpp>
 
 namespace candela::sandbox {
@@ -29,12 +32,16 @@ struct Comparison {
 /// on it.
 struct AppState {
     double update_budget_ms = 0.0;  ///< see UpdateBudget
+    double noise_limit = 0.005;     ///< see FrameRequest
     Configuration configuration;    ///< wanted; a faulty one is not taken over: see errors
     Comparison comparison;
     bool panel = true;
     bool help = false;
-    bool vpls = false;            ///< VPLs are shown as dots
-    bool estimate_error = false;  ///< of the VPLs' light
+    bool vpls = false;                    ///< VPLs are shown as dots
+    std::optional<glm::vec3> chosen_vpl;  ///< place: of the VPL next to it the details are shown
+    bool estimate_error = false;          ///< of the VPLs' light
+    bool probe = false;                   ///< the values of the pixel under the pointer are shown
+    std::optional<glm::uvec2> probed;     ///< that pixel, across and up
     /// The path tracer's picture of what is shown is refined in the background, and compared with it.
     bool reference = false;
     /// What the scene's file asks for and the picture lacks, and what the renderer left out.

@@ -4,6 +4,7 @@
 #include <span>
 #include <utility>
 
+#include <glm/common.hpp>
 #include <glm/vec4.hpp>
 
 #include <candela/graph/describe.hpp>
@@ -58,6 +59,10 @@ std::unique_ptr<Renderer> FrameRenderer::make_renderer() const {
 }
 
 void FrameRenderer::begin(FrameRequest request, std::uint64_t number) {
+    const bool same_picture = request_ && request.world == request_->world &&
+                              request.camera == request_->camera && request.size == request_->size &&
+                              request.configuration == request_->configuration;
+    if (!same_picture) noise_.reset();
     request_ = std::move(request);
     number_ = number;
     refines_ = false;
@@ -126,6 +131,7 @@ std::optional<std::string> FrameRenderer::replace_renderers() {
     }
     other_.reset();
     graph_.reset();
+    noise_.reset();
     return std::nullopt;
 }
 
@@ -158,6 +164,10 @@ std::optional<RenderedFrame> FrameRenderer::render_request(Slot& slot, const Fra
     for (const FrameReport& times : frame.times) budget_.learn(times);
     frame.graph = graph();
     const FrameResults results = renderer_->results();
+    estimate_noise(results.radiance);
+    frame.noise = noise_.value();
+    frame.probed = probe(slot.picture, results.radiance);
+    settled_ |= is_quiet();
     if (request_->read_vpls) frame.vpls = read_dots(device_, results);
     if (request_->read_radiance) frame.radiance = read_radiance(device_, results.radiance);
     return frame;
@@ -186,10 +196,12 @@ void FrameRenderer::fit(tools::Canvas& canvas, glm::uvec2 size) {
 
 bool FrameRenderer::draw(Renderer& renderer, tools::Canvas& canvas, const FrameOptions& options) {
     fit(canvas, size_);
-    const RenderView view{.camera = request_->camera,
-                          .target = canvas.target(),
-                          .keep = {.radiance = request_->read_radiance, .vpls = request_->read_vpls},
-                          .estimate_error = request_->estimate_error};
+    const RenderView view{
+        .camera = request_->camera,
+        .target = canvas.target(),
+        .keep = {.radiance = request_->read_radiance || request_->probe || estimates_noise(),
+                 .vpls = request_->read_vpls},
+        .estimate_error = request_->estimate_error};
     return renderer.render(*request_->world, std::span(&view, 1), options);
 }
 
@@ -208,6 +220,36 @@ std::shared_ptr<const Report> FrameRenderer::report() {
         report_time_ = now;
     }
     return report_;
+}
+
+bool FrameRenderer::estimates_noise() const {
+    return request_->noise_limit > 0.0 && request_->configuration.refinement.enabled;
+}
+
+/// Not after a few frames: their samples leave steps at edges, which are few pixels, and they have few sets
+/// of surfels.
+bool FrameRenderer::is_quiet() const {
+    constexpr std::uint32_t least = 32;
+    return !other_ && noise_.value() && *noise_.value() <= request_->noise_limit && report_->refined >= least;
+}
+
+/// With the frames whose number is known: those with a new report.
+void FrameRenderer::estimate_noise(const ResultTexture& radiance) {
+    if (!estimates_noise() || radiance.texture == 0) return noise_.reset();
+    if (noise_time_ == report_time_) return;
+    noise_time_ = report_time_;
+    const bool is_whole = !report_->vpls || report_->vpls->waiting == 0;
+    if (!is_whole || !noise_.wants(report_->refined)) return;
+    noise_.add(report_->refined, gl::read_texels(device_.gl(), radiance.texture, radiance.size));
+}
+
+std::optional<ProbedPixel> FrameRenderer::probe(const tools::Canvas& picture, const ResultTexture& radiance) {
+    if (!request_->probe || radiance.texture == 0) return std::nullopt;
+    const glm::uvec2 at = glm::min(*request_->probe, request_->size - 1U);
+    const auto texel = [&](std::uint32_t texture) {
+        return glm::vec3(gl::read_texels(device_.gl(), texture, glm::uvec2(1), at).front());
+    };
+    return ProbedPixel{at, texel(radiance.texture), texel(picture.colour.name())};
 }
 
 FinishedTexture FrameRenderer::draw_difference_of(Slot& slot) {

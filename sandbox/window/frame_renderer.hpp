@@ -16,6 +16,7 @@
 #include "sandbox/candela_private.hpp"
 #include "sandbox/headless/update_budget.hpp"
 #include "sandbox/window/frame_request.hpp"
+#include "sandbox/window/noise_estimate.hpp"
 #include "sandbox/window/obsolete.hpp"
 
 namespace candela::sandbox {
@@ -69,6 +70,11 @@ class FrameRenderer {
     FinishedTexture draw_difference_of(Slot& slot);
     void inspect(RenderedFrame& frame, tools::Canvas& canvas);
     std::shared_ptr<const Report> report();
+    [[nodiscard]] bool estimates_noise() const;
+    [[nodiscard]] std::optional<ProbedPixel> probe(const tools::Canvas& picture,
+                                                   const ResultTexture& radiance);
+    [[nodiscard]] bool is_quiet() const;
+    void estimate_noise(const ResultTexture& radiance);
     std::shared_ptr<const GraphDescription> graph();
 
     gl::GetProc functions_;
@@ -90,6 +96,8 @@ class FrameRenderer {
     bool has_rendered_ = false;
     std::shared_ptr<const Report> report_;
     Clock::time_point report_time_;
+    NoiseEstimate noise_;
+    Clock::time_point noise_time_;  ///< report_time_ when it was estimated
     std::shared_ptr<const GraphDescription> graph_;
     std::vector<std::string> graph_passes_;
     Clock::time_point graph_time_;  ///< report_time_ when it was made

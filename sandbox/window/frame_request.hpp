@@ -34,6 +34,10 @@ struct FrameRequest {
     bool read_vpls = false;                  ///< fills RenderedFrame::vpls
     bool read_radiance = false;              ///< fills RenderedFrame::radiance
     bool estimate_error = false;             ///< see RenderView::estimate_error
+    std::optional<glm::uvec2> probe{};       ///< fills RenderedFrame::probed: across and up
+    /// Refinement ends when NoiseEstimate::value falls to this; 0: only with the last frame. While a second
+    /// configuration is rendered, too, always with the last frame.
+    double noise_limit = 0.0;
     bool cut = false;  ///< nothing moves on from the request before: no frame of reduced quality comes first
     bool whole = false;  ///< also the first frame has all pixels, however long it takes
     /// When the oldest input event that this request answers arrived.
@@ -53,6 +57,13 @@ struct VplDot {
 struct FinishedTexture {
     std::uint32_t texture = 0;  ///< GL name, rgba8, tone-mapped; the bottom row first
     glm::uvec2 size{0};         ///< pixels
+};
+
+/// What a pixel of the picture has.
+struct ProbedPixel {
+    glm::uvec2 at{0};          ///< across and up
+    glm::vec3 radiance{0.0F};  ///< linear, before exposure and tone map
+    glm::vec3 colour{0.0F};    ///< that is shown, 0 to 1, sRGB-encoded
 };
 
 /// A frame that is ready to be shown.
@@ -75,6 +86,8 @@ struct RenderedFrame {
     std::shared_ptr<const GraphDescription> graph;
     std::vector<VplDot> vpls;
     std::shared_ptr<const tools::Picture> radiance;
+    std::optional<ProbedPixel> probed;
+    std::optional<double> noise;  ///< NoiseEstimate::value, while refinement goes on or has ended
 };
 
 }  // namespace candela::sandbox

@@ -17,6 +17,7 @@ Status status_of(const SessionState& state) {
     if (report == nullptr) return status;
     if (report->vpls) status.vpls = report->vpls->alive;
     status.refined = report->refined;
+    status.noise = state.shown->noise;
     const RefinementSettings& refinement = state.shown->configuration.refinement;
     status.to_refine = refinement.enabled ? refinement.frames : 0;
     return status;
@@ -31,7 +32,9 @@ FrameRequest frame_request(SessionState& state, glm::uvec2 size) {
                          .update_budget_ms = app.update_budget_ms,
                          .read_vpls = app.vpls,
                          .read_radiance = app.reference,
-                         .estimate_error = app.estimate_error};
+                         .estimate_error = app.estimate_error,
+                         .noise_limit = app.noise_limit};
+    if (app.probe && !state.selection.resource) request.probe = app.probed;
     if (state.selection.resource) {
         request.inspection = state.selection.inspection;
         request.inspection->resource = *state.selection.resource;

@@ -1,5 +1,7 @@
 #include "sandbox/window/window_view.hpp"
 
+#include <glm/common.hpp>
+
 #include <candela/scene/hierarchy.hpp>
 #include "sandbox/panels/controls.hpp"
 #include "sandbox/panels/overlay.hpp"
@@ -7,6 +9,7 @@
 #include "sandbox/panels/resource_view.hpp"
 #include "sandbox/panels/scene_panel.hpp"
 #include "sandbox/panels/view_panel.hpp"
+#include "sandbox/panels/vpl_details.hpp"
 #include "sandbox/panels/vpl_dots.hpp"
 #include "sandbox/window/gui.hpp"
 
@@ -22,19 +25,39 @@ void draw_pictures(const RenderedFrame& shown, const Comparison& comparison, con
     }
 }
 
-void draw_overlay(const SessionState& state) {
+void draw_overlay(SessionState& state) {
     const Interaction& interaction = state.document->interaction;
     const World& world = state.document->scene.world;
     const Rectangle& scene = state.layout.scene;
     const Viewport viewport = make_viewport(world, interaction.viewer(), scene.size, scene.corner);
     const glm::vec3 eye(world_matrix(world, interaction.viewer())[3]);
     if (state.app.vpls) {
-        draw_vpl_dots(state.shown->vpls, viewport,
-                      [&](const glm::vec3& point) { return !interaction.surfaces().blocked(eye, point); });
+        draw_vpl_dots(
+            state.shown->vpls, viewport,
+            [&](const glm::vec3& point) { return !interaction.surfaces().blocked(eye, point); },
+            state.app.chosen_vpl);
+    }
+    if (state.app.vpls && state.app.chosen_vpl && !state.shown->vpls.empty()) {
+        const std::size_t index = *vpl_at(state.shown->vpls, *state.app.chosen_vpl);
+        draw_vpl_details(index, details_of(world, interaction.surfaces(), state.shown->vpls, index),
+                         state.app.chosen_vpl, scene);
     }
     const Overlay overlay = interaction.overlay(viewport, !ImGui::GetIO().WantCaptureMouse);
     draw_lights(overlay.lights);
+    draw_rings(overlay.others);
     if (overlay.gizmo) draw_gizmo(*overlay.gizmo, overlay.active);
+}
+
+/// The pixel under the pointer is asked for, and told when its values are there.
+void draw_probed(SessionState& state) {
+    const Rectangle& scene = state.layout.scene;
+    const glm::vec2 pointer(ImGui::GetIO().MousePos.x, ImGui::GetIO().MousePos.y);
+    if (!state.app.probe || ImGui::GetIO().WantCaptureMouse || !scene.contains(pointer)) return;
+    const glm::vec2 size(state.shown->picture.size);
+    glm::vec2 share = (pointer - scene.corner) / scene.size;
+    share.y = 1.0F - share.y;  // the bottom row is the first
+    state.app.probed = glm::uvec2(glm::clamp(share * size, glm::vec2(0.0F), size - 1.0F));
+    if (state.shown->probed) draw_probe(words_of(*state.shown->probed), scene);
 }
 
 /// A tab, whose content `draw` draws while it is open.
@@ -52,8 +75,10 @@ void draw_tabs(SessionState& state, std::vector<Action>& wanted) {
             wanted.push_back(action);
         }
     });
-    tab("Quality", "how a frame is computed",
-        [&] { draw_quality_panel(state.app.configuration, state.shown ? state.shown->quality : Quality{}); });
+    tab("Quality", "how a frame is computed", [&] {
+        draw_quality_panel(state.app.configuration, state.app.noise_limit,
+                           state.shown ? state.shown->quality : Quality{});
+    });
     tab("Light", "what of the light is shown; comparisons",
         [&] { draw_view_panel(state.app, state.report(), state.reference, state.costs.frame().mean_ms); });
     tab("Graph", "what the frame graph does, and what it costs",
@@ -92,6 +117,7 @@ void draw_scene(SessionState& state, glm::vec2 window) {
     }
     draw_pictures(shown, state.app.comparison, state.layout.scene);
     draw_overlay(state);
+    draw_probed(state);
     draw_comparison(state.app.comparison, side_labels(state.app, state.reference), state.layout.scene);
 }
 

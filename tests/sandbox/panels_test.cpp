@@ -18,6 +18,7 @@
 #include "sandbox/panels/controls.hpp"
 #include "sandbox/panels/graph_panel.hpp"
 #include "sandbox/panels/open_panel.hpp"
+#include "sandbox/panels/overlay.hpp"
 #include "sandbox/panels/quality_panel.hpp"
 #include "sandbox/panels/resource_view.hpp"
 #include "sandbox/panels/scene_panel.hpp"
@@ -174,7 +175,8 @@ TEST_CASE("a comparison begins with two equal configurations, is shown in two wa
 
 TEST_CASE("presets and paths are chosen by a click") {
     Configuration configuration;
-    Screen screen(in_panel([&] { draw_quality_panel(configuration, {}); }));
+    double noise_limit = 0.0;
+    Screen screen(in_panel([&] { draw_quality_panel(configuration, noise_limit, {}); }));
     for (const char* const preset : {"draft", "best", "report", "balanced"}) {
         screen.click(preset);
         CHECK(name_of(configuration) == preset);
@@ -187,9 +189,12 @@ TEST_CASE("presets and paths are chosen by a click") {
 
 TEST_CASE("the names of settings are not cut by the edge of the panel") {
     Configuration configuration;
+    configuration.refinement.enabled = true;
+    double noise_limit = 0.0;
     for (const float width : {340.0F, 170.0F}) {  // of the widest and the narrowest panel
-        const Screen screen(in_panel([&] { draw_quality_panel(configuration, {}); }), width);
+        const Screen screen(in_panel([&] { draw_quality_panel(configuration, noise_limit, {}); }), width);
         CHECK(screen.has("shadows.cube_resolution"));
+        CHECK(screen.has("end refinement at noise, %"));
         CHECK(screen.right_edge() <= width);
     }
 }
@@ -294,6 +299,49 @@ TEST_CASE("a scene is picked in a folder within the shown one, and a folder that
     screen.click("lamp");  // controls are known by what is before the signs
     CHECK(chosen == folder / "lamps/lamp##2.gltf");
     CHECK_FALSE(panel.is_shown());
+}
+
+TEST_CASE("an object is selected in the tree, with Ctrl besides others") {
+    Document document(load_scene(shipped_file("scenes", "cornell.gltf")), std::nullopt, 1.0F);
+    const AppState state;
+    Screen screen(in_panel([&] { (void)draw_scene_panel(document, state, nullptr); }));
+    screen.click("tall block");
+    REQUIRE(document.interaction.selected);
+    CHECK(name_of(document.scene.world, *document.interaction.selected) == "tall block");
+    ImGui::GetIO().KeyCtrl = true;
+    screen.click("ceiling light");
+    CHECK(document.interaction.all_selected().size() == 2);
+    CHECK(name_of(document.scene.world, *document.interaction.selected) == "ceiling light");
+    ImGui::GetIO().KeyCtrl = false;
+    document.objects.find = "block";
+    screen.click("short block");
+    CHECK(document.interaction.all_selected().size() == 1);
+    CHECK_FALSE(screen.has("ceiling light"));
+}
+
+TEST_CASE("the texel under the pointer is that of the picture, whose bottom row is the first") {
+    InspectionResult result;
+    result.extent = {8, 4};
+    const Rectangle picture{{100.0F, 50.0F}, {160.0F, 80.0F}};  // 20 x 20 for a texel
+    CHECK(texel_at(result, picture, {101.0F, 129.0F}) == glm::uvec2(0, 0));
+    CHECK(texel_at(result, picture, {259.0F, 51.0F}) == glm::uvec2(7, 3));
+    CHECK(texel_at(result, picture, {165.0F, 95.0F}) == glm::uvec2(3, 1));
+    CHECK_FALSE(texel_at(result, picture, {99.0F, 60.0F}));
+    // Tiles of 16 pixels: the second one from the left, the lowest.
+    result.extent = {40, 20};
+    result.texel_size = 16;
+    CHECK(texel_at(result, picture, {100.0F + 17.0F * 4.0F, 125.0F}) == glm::uvec2(1, 0));
+}
+
+TEST_CASE("the values of a texel and of a pixel are told by channel") {
+    CHECK(words_of(InspectedTexel{{5, 3}, {0.25F, 1.0F, -2.0F, 9.0F}, 3, {}}, "") == "texel 5, 3: 0.25 1 -2");
+    CHECK(words_of(InspectedTexel{{5, 3}, {7.0F, 0.0F, 0.0F, 1.0F}, 1, {}}, "lights") ==
+          "texel 5, 3: 7 lights");
+    CHECK(words_of(InspectedTexel{{0, 0}, {0.5F, 0.0F, 0.0F, 1.0F}, 1, 2.5F}, "m") ==
+          "texel 0, 0: 0.5, 2.5 m");
+    CHECK(words_of(InspectedTexel{{0, 0}, glm::vec4(0.0F), 1, 0.0F}, "m") == "texel 0, 0: 0, no surface");
+    CHECK(words_of(ProbedPixel{{12, 34}, {0.1F, 2.0F, 30.0F}, {0.0F, 0.5F, 1.0F}}) ==
+          "pixel 12, 34: radiance 0.1 2 30, colour 0 128 255");
 }
 }  // TEST_SUITE("panels")
 

@@ -5,9 +5,13 @@
 #include <algorithm>
 #include <thread>
 
+#include <glm/common.hpp>
+#include <glm/vector_relational.hpp>
+
 #include <candela/headless_context.hpp>
 #include "renderer/facade/device_of.hpp"
 #include "renderer/gl/texture.hpp"
+#include "sandbox/editing/light_picking.hpp"
 #include "sandbox/scene/scene.hpp"
 #include "sandbox/window/frame_renderer.hpp"
 
@@ -221,6 +225,51 @@ TEST_CASE("within a budget, surfels are traced frame by frame until the picture 
     while (!frame.settled) frame = rendering.thread.wait_for(frame.request);
     CHECK(frame.report->vpls->waiting == 0);
     CHECK(rendering.read(frame.picture) == whole);
+}
+
+TEST_CASE("refinement ends at the wanted noise, and begins again when something has moved") {
+    Rendering rendering;
+    FrameRequest request = rendering.request();
+    request.configuration.refinement = {.enabled = true, .frames = 1U << 20U};
+    request.noise_limit = 0.02;
+    const auto settle = [&] {
+        RenderedFrame frame = rendering.render(request);
+        CHECK_FALSE(frame.settled);
+        while (!frame.settled) frame = rendering.thread.wait_for(frame.request);
+        return frame;
+    };
+    const RenderedFrame rough = settle();
+    REQUIRE(rough.noise);
+    CHECK(*rough.noise <= 0.02);
+    CHECK(rough.report->refined >= 32);
+    CHECK(rough.report->refined < 1U << 20U);
+    request.noise_limit = 0.5 * *rough.noise;
+    const RenderedFrame fine = settle();
+    CHECK(*fine.noise <= request.noise_limit);
+    CHECK(fine.report->refined > rough.report->refined);
+    rendering.scene.world.edit<Transform>(light_markers(rendering.scene.world).front().entity,
+                                          [](Transform& transform) { transform.translation.x += 0.1F; });
+    request.world = rendering.request().world;
+    const RenderedFrame moved = settle();
+    CHECK(*moved.noise <= request.noise_limit);
+}
+
+TEST_CASE("a pixel of the picture is told by its radiance and by its colour") {
+    Rendering rendering;
+    FrameRequest request = rendering.request();
+    CHECK_FALSE(rendering.render(request).probed);
+    request.configuration.tone_map.enabled = false;
+    request.probe = glm::uvec2(7, 3);
+    const RenderedFrame frame = rendering.render(request);
+    REQUIRE(frame.probed);
+    CHECK(frame.probed->at == glm::uvec2(7, 3));
+    const glm::vec3 shown(rendering.read(frame.picture)[3 * request.size.x + 7]);
+    CHECK(frame.probed->colour == shown);
+    // Without a tone map the picture has the radiance, rounded to 8 bits.
+    CHECK(glm::all(
+        glm::lessThan(glm::abs(glm::min(frame.probed->radiance, 1.0F) - shown), glm::vec3(0.51F / 255.0F))));
+    request.probe = glm::uvec2(999, 999);
+    CHECK(rendering.render(request).probed->at == request.size - 1U);
 }
 }  // TEST_SUITE("render thread")
 

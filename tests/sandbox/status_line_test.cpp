@@ -20,8 +20,10 @@ TEST_CASE("it tells the frame time, and what converges") {
     status.refined = 12;
     status.to_refine = 1024;
     CHECK(to_words(status) == "12.3 ms (mean 15.0) · 512 VPLs · refined 12/1024");
+    status.noise = 0.0123;
+    CHECK(to_words(status) == "12.3 ms (mean 15.0) · 512 VPLs · refined 12/1024 · noise 1.2 %");
     status.settled = true;
-    CHECK(to_words(status) == "12.3 ms (mean 15.0) · 512 VPLs · refined 12/1024 · done");
+    CHECK(to_words(status) == "12.3 ms (mean 15.0) · 512 VPLs · refined 12/1024 · noise 1.2 % · done");
 }
 
 TEST_CASE("it tells the quality that was chosen for the frame time") {

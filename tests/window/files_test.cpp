@@ -134,7 +134,10 @@ void save_and_open(App& app, const Files& files) {
     // changes presets or deletes anything.
     const Json record = app.log();
     app.type_with_control(XK_o);
-    app.type("candela-001.gltf\n");
+    app.type("candela-0");
+    app.press_key(XK_Tab);  // completes the name
+    app.keep("open");
+    app.press_key(XK_Return);
     app.wait_for("the saved scene", [](const Json& newest) {
         return newest["scene_file"].get<std::string>().ends_with("candela-001.gltf");
     });
