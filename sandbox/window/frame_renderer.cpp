@@ -238,7 +238,7 @@ void FrameRenderer::estimate_noise(const ResultTexture& radiance) {
     if (!estimates_noise() || radiance.texture == 0) return noise_.reset();
     if (noise_time_ == report_time_) return;
     noise_time_ = report_time_;
-    const bool is_whole = !report_->vpls || report_->vpls->waiting == 0;
+    const bool is_whole = size_ == request_->size && (!report_->vpls || report_->vpls->waiting == 0);
     if (!is_whole || !noise_.wants(report_->refined)) return;
     noise_.add(report_->refined, gl::read_texels(device_.gl(), radiance.texture, radiance.size));
 }
@@ -247,7 +247,8 @@ std::optional<ProbedPixel> FrameRenderer::probe(const tools::Canvas& picture, co
     if (!request_->probe || radiance.texture == 0) return std::nullopt;
     const glm::uvec2 at = glm::min(*request_->probe, request_->size - 1U);
     const auto texel = [&](std::uint32_t texture) {
-        return glm::vec3(gl::read_texels(device_.gl(), texture, glm::uvec2(1), at).front());
+        const glm::uvec2 drawn = at * size_ / request_->size;  // the picture may be smaller
+        return glm::vec3(gl::read_texels(device_.gl(), texture, glm::uvec2(1), drawn).front());
     };
     return ProbedPixel{at, texel(radiance.texture), texel(picture.colour.name())};
 }
