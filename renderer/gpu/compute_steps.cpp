@@ -15,7 +15,7 @@ void ComputeSteps::run_indirect(const gl::Program& program, const gl::Uniforms& 
 void ComputeSteps::begin(const gl::Program& program, const gl::Uniforms& uniforms) {
     if (!is_first_) {
         gpu_.gl().MemoryBarrier(GL_SHADER_STORAGE_BARRIER_BIT | GL_SHADER_IMAGE_ACCESS_BARRIER_BIT |
-                                 GL_COMMAND_BARRIER_BIT);
+                                GL_COMMAND_BARRIER_BIT);
     }
     is_first_ = false;
     program.use(uniforms);

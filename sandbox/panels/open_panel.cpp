@@ -18,6 +18,9 @@ namespace {
 /// Tab and the arrow keys in the field of the name.
 int take_key(ImGuiInputTextCallbackData* data) {
     auto& browser = *static_cast<FolderBrowser*>(data->UserData);
+    // Letters may have come in the same frame as the key.
+    const std::string typed(data->Buf, static_cast<std::size_t>(data->BufTextLen));
+    if (typed != browser.typed()) browser.type(typed);
     if (data->EventFlag == ImGuiInputTextFlags_CallbackCompletion) {
         const std::string completed = browser.completed();
         data->DeleteChars(0, data->BufTextLen);

@@ -74,6 +74,25 @@ class Screen {
             settle();
         }
     }
+    /// Types letters and Tab, all in one frame.
+    void type_with_tab(const char* letters) {
+        settle();  // what has opened has the keyboard
+        settle();
+        ImGuiIO& io = ImGui::GetIO();
+        io.AddInputCharactersUTF8(letters);
+#if IMGUI_VERSION_NUM < 18700
+        io.KeyMap[ImGuiKey_Tab] = 1;
+        io.KeysDown[1] = true;
+        settle();
+        io.KeysDown[1] = false;
+#else
+        io.ConfigInputTrickleEventQueue = false;
+        io.AddKeyEvent(ImGuiKey_Tab, true);
+        settle();
+        io.AddKeyEvent(ImGuiKey_Tab, false);
+#endif
+        settle();
+    }
 
  private:
     /// Windows need a frame to find their size.
@@ -299,6 +318,21 @@ TEST_CASE("a scene is picked in a folder within the shown one, and a folder that
     screen.click("lamp");  // controls are known by what is before the signs
     CHECK(chosen == folder / "lamps/lamp##2.gltf");
     CHECK_FALSE(panel.is_shown());
+}
+
+TEST_CASE("Tab completes what was typed, also just before it") {
+    const TemporaryFolder folder;
+    std::ofstream(folder / "lamp-post.gltf") << "{}";
+    std::ofstream(folder / "moon.gltf") << "{}";
+    OpenPanel panel;
+    std::optional<std::filesystem::path> chosen;
+    Screen screen([&] {
+        if (const auto file = panel.draw()) chosen = file;
+    });
+    panel.show({}, folder / "");
+    screen.type_with_tab("la");
+    screen.click("open file");
+    CHECK(chosen == folder / "lamp-post.gltf");
 }
 
 TEST_CASE("an object is selected in the tree, with Ctrl besides others") {
