@@ -19,8 +19,8 @@ class ComputeSteps {
     explicit ComputeSteps(const Gpu& gpu) : gpu_(gpu) {}
 
     void run(const gl::Program& program, const Groups& groups, const gl::Uniforms& uniforms = {});
-    /// The numbers of groups are at `offset`, in bytes, in the buffer that the pass reads with Usage::indirect,
-    /// or has bound for that.
+    /// The numbers of groups are at `offset`, in bytes, in the buffer that the pass reads with
+    /// Usage::indirect, or has bound for that.
     void run_indirect(const gl::Program& program, const gl::Uniforms& uniforms = {}, GLintptr offset = 0);
 
  private:

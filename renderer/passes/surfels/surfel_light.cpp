@@ -42,8 +42,8 @@ struct BouncePrograms {
 };
 
 /// Gathers up to bounce `bounces`. Every few bounces, the account finds out how much light is left; once it
-/// is little, the remaining dispatches have no work groups: where the CPU does their work, dispatches that only
-/// return would take longer than what is gathered. If all bounces are wanted, each time before that the
+/// is little, the remaining dispatches have no work groups: where the CPU does their work, dispatches that
+/// only return would take longer than what is gathered. If all bounces are wanted, each time before that the
 /// light of those to come is added as far as the last two tell.
 void gather_bounces(ComputeSteps& steps, const BouncePrograms& programs, std::uint32_t count,
                     std::uint32_t bounces) {
