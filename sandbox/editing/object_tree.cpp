@@ -33,6 +33,7 @@ std::map<Entity, std::string_view> kinds_of(const World& world) {
         kinds[entity] = light_traits<Light>.name;
     });
     std::vector<Entity> ahead;
+    ahead.reserve(kinds.size());
     for (const auto& [entity, kind] : kinds) ahead.push_back(entity);
     while (!ahead.empty()) {
         const Entity parent = parent_of(world, ahead.back());

@@ -16,8 +16,8 @@ double relative_distance(const std::vector<glm::vec4>& a, const std::vector<glm:
     double count = 0.0;
     for (std::size_t i = 0; i < a.size(); ++i) {
         for (glm::length_t channel = 0; channel < 3; ++channel) {
-            const double first = static_cast<double>(a[i][channel]);
-            const double second = static_cast<double>(b[i][channel]);
+            const auto first = static_cast<double>(a[i][channel]);
+            const auto second = static_cast<double>(b[i][channel]);
             if (!std::isfinite(first) || !std::isfinite(second)) continue;
             squares += (first - second) * (first - second);
             sum += second;

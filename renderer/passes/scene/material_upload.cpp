@@ -321,6 +321,7 @@ bool MaterialTable::upload_texels(Execution& run, BufferHandle<std::uint32_t> te
     const auto add = [&](UploadedImage& image) { images.push_back(&image); };
     const auto ranges = [&] {
         std::vector<BufferRange*> all;
+        all.reserve(images.size());
         for (UploadedImage* image : images) all.push_back(&image->range);
         return all;
     };

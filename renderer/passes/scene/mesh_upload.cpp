@@ -40,6 +40,7 @@ struct Pieces {
 template <class T>
 std::vector<BufferRange*> ranges_of(const std::vector<Piece<T>>& pieces) {
     std::vector<BufferRange*> ranges;
+    ranges.reserve(pieces.size());
     for (const Piece<T>& piece : pieces) ranges.push_back(piece.range);
     return ranges;
 }
