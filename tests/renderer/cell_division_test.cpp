@@ -31,8 +31,10 @@ class Surroundings {
         layout_.geometry.items.push_back({.entity = {item, 0}, .mesh = mesh});
         DrawnPrimitive drawn{.mesh = mesh};
         for (const Vertex& vertex : drawn.primitive().vertices) drawn.bounds.grow(vertex.position);
-        layout_.drawables.push_back(
-            {.item = item, .drawn = std::make_shared<const DrawnPrimitive>(std::move(drawn))});
+        layout_.drawables.push_back({.entity = {item, 0},
+                                     .item = item,
+                                     .next = SceneLayout::none,
+                                     .drawn = std::make_shared<const DrawnPrimitive>(std::move(drawn))});
         layout_.first_of_item.push_back(item);
         placement_.world.push_back(world);
         hierarchy_.update(layout_, placement_);

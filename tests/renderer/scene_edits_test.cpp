@@ -10,6 +10,7 @@
 #include <vector>
 
 #include "tests/renderer/path_fixture.hpp"
+#include "tests/seed.hpp"
 #include "tests/uploads.hpp"
 
 TEST_SUITE("scene edits") {
@@ -137,6 +138,75 @@ TEST_CASE_FIXTURE(PathFixture, "light does not leak through a wall under which t
         scene.world.set(floor, at({x, 0.05F, 0}));
         CHECK(render(scene, picture_size) == from_scratch(scene, picture_size));
     }
+}
+
+TEST_CASE_FIXTURE(PathFixture,
+                  "whatever comes, goes and takes the place of others, a frame is that of a new renderer") {
+    std::mt19937 random(test_seed(41));
+    const auto below = [&](std::uint32_t n) { return static_cast<std::uint32_t>(random()) % n; };
+    Material glass;
+    glass.base_colour = {0.3F, 0.5F, 0.9F, 0.5F};
+    glass.alpha_mode = AlphaMode::blend;
+    // Opaque, masked and blended, with images and without.
+    const std::vector meshes{box_inwards(0.15F, diffuse({0.9F, 0.2F, 0.2F})),
+                             box_inwards(0.2F, diffuse({0.2F, 0.9F, 0.2F}, true)),
+                             square(0.3F, textured(8, 1)), square(0.25F, textured(8, 4)),
+                             square(0.2F, std::make_shared<const Material>(glass))};
+    const auto anywhere = [&] {
+        const auto along = [&] { return 0.1F * static_cast<float>(below(16)) - 0.75F; };
+        const float x = along(), z = along();
+        // Some are mirrored.
+        return Transform{.translation = {x, 0.3F + 0.1F * static_cast<float>(below(6)), z},
+                         .scale = {below(3) == 0 ? -1.0F : 1.0F, 1.0F, 1.0F}};
+    };
+    Scene scene = lit_ground();
+    Configuration configuration = traced(VplPlacement::paths);
+    configuration.vpls.count = 8;
+    configure(configuration);
+    std::vector<Entity> things;
+    for (int frame = 0; frame < 40; ++frame) {
+        for (std::uint32_t i = below(3); i > 0 && !things.empty(); --i) {
+            const auto gone = things.begin() + below(static_cast<std::uint32_t>(things.size()));
+            scene.world.destroy(*gone);
+            things.erase(gone);
+        }
+        for (std::uint32_t i = below(things.size() < 10 ? 5 : 2); i > 0; --i) {
+            const auto& mesh = meshes[below(static_cast<std::uint32_t>(meshes.size()))];
+            things.push_back(add(scene.world, anywhere(), MeshInstance{mesh}));
+        }
+        if (!things.empty() && below(2) == 0) {
+            scene.world.set(things[below(static_cast<std::uint32_t>(things.size()))], anywhere());
+        }
+        CAPTURE(frame);
+        const bool same = render(scene, picture_size) == from_scratch(scene, picture_size);
+        REQUIRE(same);
+    }
+}
+
+TEST_CASE_FIXTURE(PathFixture,
+                  "which of two surfaces at the same place is hit depends on the entities alone") {
+    Scene scene = lit_ground();
+    const Entity spare = scene.world.create();  // its index is smaller than those of the surfaces
+    const auto red = square(0.6F, diffuse({0.9F, 0.1F, 0.1F}, true));
+    const auto blue = square(0.6F, diffuse({0.1F, 0.1F, 0.9F}, true));
+    // They stand on the ground, which their light falls on.
+    const Transform upright{.translation = {-0.3F, 0.5F, 0},
+                            .rotation = glm::angleAxis(glm::half_pi<float>(), glm::vec3(0, 0, 1))};
+    add(scene.world, upright, MeshInstance{red});
+    const Entity hidden = add(scene.world, upright, MeshInstance{blue});
+    configure(traced(VplPlacement::paths));
+    const Picture before = render(scene, picture_size);
+    // Another one comes in its place, in the list of the world, too, with the spare's index.
+    scene.world.destroy(hidden);
+    scene.world.destroy(spare);
+    const Entity shown = add(scene.world, upright, MeshInstance{blue});
+    REQUIRE(shown.index == spare.index);
+    const Picture now = render(scene, picture_size);
+    CHECK(now != before);
+    CHECK(now == from_scratch(scene, picture_size));
+    // Whoever has the index of the one before gets ids of its own.
+    add(scene.world, at({0.4F, 0.9F, 0}), MeshInstance{red});
+    CHECK(render(scene, picture_size) == from_scratch(scene, picture_size));
 }
 
 TEST_CASE_FIXTURE(PathFixture, "a hierarchy that is built again after a move may be larger than it was") {

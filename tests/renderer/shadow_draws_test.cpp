@@ -62,8 +62,10 @@ SceneLayout layout_of(Primitive primitive) {
     if (parts.size() > 1) drawn.parts = parts;
     SceneLayout layout;
     layout.first_of_item.push_back(0);
-    layout.drawables.push_back(
-        {.item = 0, .drawn = std::make_shared<const DrawnPrimitive>(std::move(drawn))});
+    layout.drawables.push_back({.entity = {},
+                                .item = 0,
+                                .next = SceneLayout::none,
+                                .drawn = std::make_shared<const DrawnPrimitive>(std::move(drawn))});
     layout.draw_of.push_back(0);
     layout.draws.push_back({.index_count = index_count,
                             .instance_count = 1,

@@ -75,7 +75,9 @@ void KeptLayout::add(const SceneGeometry& geometry, std::uint32_t item) {
     for (std::size_t i = primitives.size(); i-- > 0;) {  // from the end, as each one knows the next
         const std::shared_ptr<const DrawnPrimitive>& drawn = primitives[i];
         const std::uint32_t number = take_number();
-        layout_.drawables.set(number, {.item = item, .next = std::exchange(next, number), .drawn = drawn});
+        layout_.drawables.set(
+            number,
+            {.entity = added.entity, .item = item, .next = std::exchange(next, number), .drawn = drawn});
         order_.insert(group_of(*drawn, added.mirrored)->second.places, key_of(added.entity, *drawn), number);
         if (added.deformed) meshes_.add_deformed(number, *drawn);
     }

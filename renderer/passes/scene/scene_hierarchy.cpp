@@ -64,27 +64,30 @@ void SceneHierarchy::update(const SceneLayout& layout, const ScenePlacement& pla
     add_up();
 }
 
-/// Makes `objects` those of the layout's drawables. Returns the numbers of those that were added.
+/// Makes `objects` those of the layout's drawables. Returns the numbers of those that were added, or whose
+/// item has another number.
 std::vector<std::uint32_t> SceneHierarchy::take_over(const SceneLayout& layout) {
     objects.resize(layout.drawables.size());
     placed_.resize(objects.size(), {.bvh = &empty_bvh});
     std::vector<std::uint32_t> added;
+    std::vector<std::uint32_t> renumbered;
     visit_changes(drawables_, layout.drawables, [&](std::size_t i) {
         const auto object = static_cast<std::uint32_t>(i);
         const SceneLayout::Drawable& drawable = layout.drawables[i];
         const bool is_solid = SceneLayout::is_solid(drawable);
         const bool stays = objects[i] && is_solid && objects[i]->drawn == drawable.drawn &&
-                           objects[i]->entity == layout.geometry.items[drawable.item].entity;
-        if (stays) return;
+                           objects[i]->entity == drawable.entity;
+        if (stays) return renumbered.push_back(object);
         if (objects[i]) remove(object);
         if (is_solid) added.push_back(object);
     });
     std::ranges::sort(added, {}, [&](std::uint32_t object) {
         const SceneLayout::Drawable& drawable = layout.drawables[object];
-        return key_of(layout.geometry.items[drawable.item].entity, *drawable.drawn);
+        return key_of(drawable.entity, *drawable.drawn);
     });
     for (const std::uint32_t object : added) add(object, layout);
     drawables_ = layout.drawables;
+    added.insert(added.end(), renumbered.begin(), renumbered.end());
     return added;
 }
 
@@ -101,7 +104,7 @@ void SceneHierarchy::remove(std::uint32_t object) {
 void SceneHierarchy::add(std::uint32_t object, const SceneLayout& layout) {
     const SceneLayout::Drawable& drawable = layout.drawables[object];
     objects[object] = std::make_unique<ObjectHierarchy>();
-    objects[object]->entity = layout.geometry.items[drawable.item].entity;
+    objects[object]->entity = drawable.entity;
     objects[object]->drawn = drawable.drawn;
     note_place(object);
     const auto triangles = static_cast<std::uint32_t>(drawable.primitive().indices.size() / 3);

@@ -40,10 +40,16 @@ std::vector<std::uint32_t> moved_drawables(const SceneLayout& layout, const Shar
 std::vector<std::uint32_t> moved_solids(const SceneLayout& layout, const ScenePlacement& before,
                                         const ScenePlacement& now) {
     std::vector<std::uint32_t> moved = moved_drawables(layout, before.world, now.world);
+    const auto add = [&](std::uint32_t item) {
+        layout.visit_drawables(item, [&](std::uint32_t i) { moved.push_back(i); });
+    };
     for (const auto& [item, deformation] : now.deformed) {
         const Deformation* const last = find_deformation(before.deformed, item);
         if (last != nullptr && last->vertices == deformation.vertices) continue;
-        layout.visit_drawables(item, [&](std::uint32_t i) { moved.push_back(i); });
+        add(item);
+    }
+    for (const auto& [item, deformation] : before.deformed) {
+        if (item < now.world.size() && !now.deformed.contains(item)) add(item);
     }
     std::ranges::sort(moved);
     moved.erase(std::unique(moved.begin(), moved.end()), moved.end());

@@ -46,6 +46,7 @@ struct SceneLayout {
     /// One primitive of one item. It has one draw command and one record in the instance buffer. Its number
     /// stays the same as long as its entity keeps the mesh, whatever comes and goes.
     struct Drawable {
+        Entity entity{};
         std::uint32_t item = none;
         std::uint32_t next = none;                    ///< the next drawable of the item
         std::shared_ptr<const DrawnPrimitive> drawn;  ///< null where the number is not in use
