@@ -100,6 +100,8 @@
 #define UNIT_INSPECTED UNIT_BASE_COLOUR
 #define UNIT_FIRST_PICTURE UNIT_RADIANCE
 #define UNIT_SECOND_PICTURE UNIT_MEAN
+// Passes that enlarge pictures read no materials.
+#define UNIT_PICTURE_DEPTH UNIT_ALBEDO
 
 #define IMAGE_RADIANCE 0
 #define IMAGE_INDIRECT 0

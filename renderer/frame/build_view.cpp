@@ -333,6 +333,22 @@ void add_sources(FrameGraph& graph, Gpu& gpu, const SharedFrame& shared, const S
     }
 }
 
+/// The surfaces of a view once more, in the size of its target, if the picture is smaller. `parts`: of the
+/// picture.
+std::optional<EnlargedSurfaces> enlarge_surfaces(FrameGraph& graph, Gpu& gpu, const SceneData& seen,
+                                                 glm::uvec2 target, const ViewData& view,
+                                                 const ViewHandles& out, const ViewFrame& parts) {
+    if (view.size == target || !parts.depth) return std::nullopt;
+    graph.append_to_names(" (target's size)" + view_ending(parts.index));
+    ViewData target_view = add_view_upload(graph, gpu, view.camera, target);
+    target_view.workload = Workload::other;  // the same for every size of the picture
+    const Surfaces in_target =
+        out.host ? add_host_surfaces(graph, gpu, *out.host, target_view, false, std::nullopt)
+                 : add_depth_prepass(graph, gpu, seen, target_view);
+    graph.append_to_names(view_ending(parts.index));
+    return EnlargedSurfaces{*parts.depth, in_target, target_view};
+}
+
 }  // namespace
 
 Lighting lighting_of_points(const Configuration& configuration, const LitScene& lit,
@@ -405,7 +421,9 @@ void build_view(FrameGraph& graph, Gpu& gpu, const SharedFrame& shared, const Vi
     }
     if (out.averaged) parts.radiance = add_accumulate(graph, gpu, *parts.radiance, *out.averaged, view.size);
     extend(graph, shared, ExtensionPlace::before_tone_map, parts, out);
-    add_tone_map(graph, gpu, *parts.radiance, out.target, out.picture, display_of(configuration));
+    add_tone_map(graph, gpu, *parts.radiance,
+                 enlarge_surfaces(graph, gpu, seen, shape.target, view, out, parts), out.target, out.picture,
+                 display_of(configuration));
     out.parts = parts;
 }
 

@@ -5,6 +5,7 @@
 // classes". One invocation per pixel.
 #include "bindings.glsl"
 #include "surfaces/visible_surface.glsl"
+#include "surfaces/tangent_plane.glsl"
 
 layout(local_size_x = RECONSTRUCT_GROUP) in;
 
@@ -23,7 +24,6 @@ layout(binding = UNIT_INDIRECT_DIRECTION) uniform sampler2D gathered_flow;
 layout(rgba32f, binding = IMAGE_INDIRECT_DIRECTION) writeonly restrict uniform image2D reconstructed_flow;
 #endif
 
-const float SAME_NORMAL = 0.9;  // smallest cosine between normals of the same surface
 const float SAME_PLANE = 2.0;   // largest distance from the tangent plane, in widths of a pixel at that depth
 
 #ifdef MIRRORED
@@ -52,11 +52,8 @@ struct Plane {
     float depth;     // of the pixel
 };
 
-// In clip space, the plane's dot product with (x, y, z, 1) in normalised device coordinates is the distance from it in
-// pixel widths. See theory.md, "Same surface".
 Plane plane_at(ivec2 at, float depth, Surface surface) {
-    vec4 plane = vec4(face_normal(surface), -dot(face_normal(surface), surface.position)) * view.world_from_clip;
-    plane *= 0.5 * view.target_size.y / length(view.world_from_clip[1].xyz);
+    vec4 plane = tangent_plane(surface);
     return Plane(dot(plane.xy, 2.0 * vec2(along) / view.target_size), plane.z, depth);
 }
 

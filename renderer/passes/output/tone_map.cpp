@@ -31,10 +31,17 @@ std::vector<std::string> stages_of_tone_map() {
     return {"output/fullscreen.vert", "output/tone_map.frag"};
 }
 
-std::vector<std::string> variant_of(const Display& display) {
+std::vector<std::string> variant_of(const Display& display, bool guided) {
     std::vector<std::string> defined;
     if (display.automatic) defined.emplace_back("AUTOMATIC");
+    if (guided) defined.emplace_back("GUIDED");
     return defined;
+}
+
+void read_surfaces(Pass& pass, const EnlargedSurfaces& surfaces) {
+    read_view(pass, surfaces.target_view);
+    read_geometry(pass, surfaces.in_target);
+    pass.read(surfaces.depth, {Usage::sampled, UNIT_PICTURE_DEPTH});
 }
 
 }  // namespace
@@ -50,16 +57,19 @@ Display display_of(const Configuration& configuration) {
             .opaque = settings.enabled};
 }
 
-void add_tone_map(FrameGraph& graph, Gpu& gpu, TextureHandle radiance, ValueHandle<Target> target,
+void add_tone_map(FrameGraph& graph, Gpu& gpu, TextureHandle radiance,
+                  const std::optional<EnlargedSurfaces>& surfaces, ValueHandle<Target> target,
                   TextureHandle picture, const Display& display) {
     std::optional<BufferHandle<glm::vec2>> exposure;
     if (display.automatic) exposure = add_exposure(graph, gpu, radiance);
     graph.add("tone-map", [&](Pass& pass) {
         pass.read(radiance, {Usage::sampled, UNIT_RADIANCE});
         if (exposure) pass.read(*exposure, {Usage::storage, BINDING_EXPOSURE});
+        if (surfaces) read_surfaces(pass, *surfaces);
         pass.read(target);
         pass.parameter(display);
-        const gl::Program& program = gpu.program(stages_of_tone_map(), variant_of(display));
+        const gl::Program& program =
+            gpu.program(stages_of_tone_map(), variant_of(display, surfaces.has_value()));
         (void)pass.write(picture, Usage::layer_target);
         pass.run([=, &gpu, &program](Execution& run) { draw(gpu, program, run.value(target), display); });
     });
@@ -73,7 +83,7 @@ void tone_map(Gpu& gpu, const Target& target, const Display& display) {
         find_exposure(gpu, gpu.programs().compiled({exposure_stage}, {}));
         gpu.gl().MemoryBarrier(GL_SHADER_STORAGE_BARRIER_BIT);
     }
-    draw(gpu, gpu.programs().compiled(stages_of_tone_map(), variant_of(display)), target, display);
+    draw(gpu, gpu.programs().compiled(stages_of_tone_map(), variant_of(display, false)), target, display);
 }
 
 }  // namespace candela

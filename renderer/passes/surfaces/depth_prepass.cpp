@@ -1,14 +1,13 @@
 #include "renderer/passes/surfaces/depth_prepass.hpp"
 
 #include <candela/graph/execute.hpp>
-#include <candela/workload.hpp>
 #include "renderer/passes/surfaces/draw_scene.hpp"
 
 namespace candela {
 
 Surfaces add_depth_prepass(FrameGraph& graph, Gpu& gpu, const SceneData& scene, const ViewData& view) {
     return graph.add("depth-prepass", [&](Pass& pass) {
-        pass.tag(Workload::pixels);
+        pass.tag(view.workload);
         read_meshes(pass, scene);
         read_view(pass, view);
         const SurfacePrograms programs =

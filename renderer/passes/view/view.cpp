@@ -146,7 +146,7 @@ ViewData add_view_upload(FrameGraph& graph, const Gpu& gpu, ValueHandle<CameraVi
         pass.run([=, &gpu](Execution& run) {
             upload_one(gpu, run, constants, view_constants(run.value(camera), size));
         });
-        return ViewData{camera, constants, size};
+        return ViewData{.camera = camera, .constants = constants, .size = size};
     });
 }
 

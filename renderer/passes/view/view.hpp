@@ -10,6 +10,7 @@
 #include <candela/graph/frame_graph.hpp>
 #include <candela/scene/components.hpp>
 #include <candela/view.hpp>
+#include <candela/workload.hpp>
 #include "renderer/gpu/gpu.hpp"
 #include "renderer/gpu/gpu_types.hpp"
 
@@ -39,7 +40,8 @@ void read_request(Pass& pass, ValueHandle<ViewRequest> request);
 struct ViewData {
     ValueHandle<CameraView> camera;
     BufferHandle<gpu::ViewConstants> constants;
-    glm::uvec2 size{1};  ///< of the rendered picture, pixels
+    glm::uvec2 size{1};                     ///< of the rendered picture, pixels
+    Workload workload = Workload::pixels;  ///< of passes that find its surfaces
 };
 
 /// Adds node `view-upload` (CPU, then upload): the constants in shaders/view/view.glsl, for a picture of
