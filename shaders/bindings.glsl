@@ -140,6 +140,7 @@
 #define EXPOSURE_GROUPS 256 // work groups that a picture of any size is shared out to
 #define NO_SURFEL 0xffffffffu
 #define SURFEL_GROUP 64     // invocations of a work group in surfel_*.comp: surfels, cell points or rows
+#define BOUNCE_GROUP 32     // the same of surfel_bounce.comp: ROWS_A_BOUNCE surfels each
 // Rays that an invocation of surfel_light.comp casts to sources of one kind in a dispatch, at most. Each ray loops over
 // nodes of the BVH, and software drivers stop all loops of an invocation after 65,535 iterations in total.
 #define MOST_POINT_RAYS 64

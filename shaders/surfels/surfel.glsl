@@ -13,6 +13,14 @@ uniform uint column_stride;
 // surfel.
 uint surfel_of(uint row, uint column) { return column * column_stride + row % column_stride; }
 
+// Each invocation of surfel_bounce.comp gathers for so many surfels, which have the same columns. Neighbouring invocations
+// have neighbouring surfels, and each has its next one so many surfels on.
+#define ROWS_A_BOUNCE 4u
+uint bounce_rows_apart() {
+    uint all = ROWS_A_BOUNCE * column_stride;
+    return (surfel_count + all - 1u) / all * column_stride;
+}
+
 // Index of the word that holds the form factors of columns 2 * pair and 2 * pair + 1 of a row, as two half floats. The
 // words of neighbouring rows are adjacent, since neighbouring invocations read them together.
 uint form_factors_at(uint row, uint pair) { return pair * surfel_count + row; }

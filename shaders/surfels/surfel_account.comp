@@ -55,7 +55,7 @@ void main() {
         account.truncated += truncated[i];
         if (!is_spent[i]) account.account_groups.x = 1u;
     }
-    uint all_groups = (surfel_count + uint(SURFEL_GROUP) - 1u) / uint(SURFEL_GROUP);
+    uint all_groups = (bounce_rows_apart() + uint(BOUNCE_GROUP) - 1u) / uint(BOUNCE_GROUP);
     account.bounce_groups.x = account.account_groups.x * all_groups;
     flux[0] = account;
 }

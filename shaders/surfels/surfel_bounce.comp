@@ -1,9 +1,9 @@
 // One bounce: surfels gather the light that others reflect. In the first dispatch (FIRST) that is the reflected flux of
 // the lights, placed where it falls within each cell; later it is what the others gathered in the previous bounce. Adds
-// to CellLight::indirect. One invocation per surfel.
+// to CellLight::indirect. One invocation per ROWS_A_BOUNCE surfels.
 #include "surfels/surfel.glsl"
 
-layout(local_size_x = SURFEL_GROUP) in;
+layout(local_size_x = BOUNCE_GROUP) in;
 
 layout(std430, binding = BINDING_SURFELS) readonly restrict buffer Surfels { Surfel surfels[]; };
 layout(std430, binding = BINDING_DIRECT_POINTS) readonly restrict buffer DirectPoints { DirectPoint direct_points[]; };
@@ -18,14 +18,20 @@ layout(std430, binding = BINDING_BOUNCE) restrict buffer Bounce { vec4 bounced[]
 
 uniform uint bounce;  // 2 or more
 
+// The rows of an invocation. They have the same columns, so that what a column sends is read once for all of them.
+struct RowsHere {
+    vec3 position[ROWS_A_BOUNCE];
+    vec3 normal[ROWS_A_BOUNCE];
+    vec3 sum[ROWS_A_BOUNCE];  // irradiance from the columns so far, without the rows' scales
+};
+
+#ifdef FIRST
+
 // Irradiance from the flux of the lights that a cell reflects, before the scales.
-vec3 from_lit_cell(Surfel from, uint other) {
-    CellLight cell = cells[other];
-    vec3 reflected = cell.direct - cell.emitted;
-    if (reflected == vec3(0.0)) return vec3(0.0);
-    Surfel to = surfels[other];
-    if (!is_near(to.position - from.position, to.width2)) {
-        return reflected / PI * disc_term(cell.centre, to.normal, cell.radius2, from.position, from.normal);
+vec3 from_lit_cell(vec3 position, vec3 normal, Surfel to, CellLight cell) {
+    if (!is_near(to.position - position, to.width2)) {
+        vec3 reflected = cell.direct - cell.emitted;
+        return reflected / PI * disc_term(cell.centre, to.normal, cell.radius2, position, normal);
     }
     vec3 sum = vec3(0.0);
     for (uint i = 0u; i < to.point_count; ++i) {
@@ -33,36 +39,63 @@ vec3 from_lit_cell(Surfel from, uint other) {
         vec3 flux = direct.albedo * direct.arriving;
         if (flux == vec3(0.0)) continue;
         CellPoint point = cell_points[to.first_point + i];
-        sum += flux / PI * disc_term(point.position, point.normal, point.area / PI, from.position, from.normal);
+        sum += flux / PI * disc_term(point.position, point.normal, point.area / PI, position, normal);
     }
     return sum;
 }
 
-// Irradiance from the surfel in a column, with that surfel's scale but without the row's.
-vec3 from_column(Surfel from, uint row, uint column, float factor) {
-    uint other = surfel_of(row, column);
-    if (factor == 0.0) return vec3(0.0);
-#ifdef FIRST
-    return rows[other].x * from_lit_cell(from, other);
-#else
-    vec4 sent = bounced[(bounce % 2u) * surfel_count + other];
-    return factor * sent.a * sent.rgb;
-#endif
+void add_column(inout RowsHere here, uint other, float factors[ROWS_A_BOUNCE]) {
+    CellLight cell = cells[other];
+    if (cell.direct == cell.emitted) return;
+    Surfel to = surfels[other];
+    float scale = rows[other].x;
+    for (uint k = 0u; k < ROWS_A_BOUNCE; ++k) {
+        if (factors[k] == 0.0) continue;
+        here.sum[k] += scale * from_lit_cell(here.position[k], here.normal[k], to, cell);
+    }
 }
 
+#else
+
+void add_column(inout RowsHere here, uint other, float factors[ROWS_A_BOUNCE]) {
+    vec4 sent = bounced[(bounce % 2u) * surfel_count + other];
+    for (uint k = 0u; k < ROWS_A_BOUNCE; ++k) here.sum[k] += factors[k] * sent.a * sent.rgb;
+}
+
+#endif
+
 void main() {
-    uint id = gl_GlobalInvocationID.x;
-    if (id >= surfel_count) return;
-    Surfel from = surfels[id];
-    vec3 sum = vec3(0.0);
-    for (uint i = 0u; i < columns / 2u; ++i) {
-        vec2 factors = unpackHalf2x16(form_factors[form_factors_at(id, i)]);
-        if (factors == vec2(0.0)) continue;
-        sum += from_column(from, id, 2u * i, factors.x) + from_column(from, id, 2u * i + 1u, factors.y);
+    uint first = gl_GlobalInvocationID.x;
+    uint apart = bounce_rows_apart();
+    if (first >= apart) return;
+    RowsHere here;
+    for (uint k = 0u; k < ROWS_A_BOUNCE; ++k) {
+        uint id = min(first + k * apart, surfel_count - 1u);
+        here.position[k] = surfels[id].position;
+        here.normal[k] = surfels[id].normal;
+        here.sum[k] = vec3(0.0);
     }
-    float scale = rows[id].x;
-    vec3 irradiance = scale * sum;
-    bounced[((bounce + 1u) % 2u) * surfel_count + id] = vec4(cells[id].albedo * irradiance, scale);
-    bounced[2u * surfel_count + id] = vec4(irradiance, 0.0);
-    cells[id].indirect += irradiance;
+    for (uint i = 0u; i < columns / 2u; ++i) {
+        float even[ROWS_A_BOUNCE];
+        float odd[ROWS_A_BOUNCE];
+        for (uint k = 0u; k < ROWS_A_BOUNCE; ++k) {
+            uint id = min(first + k * apart, surfel_count - 1u);
+            vec2 factors = unpackHalf2x16(form_factors[form_factors_at(id, i)]);
+            even[k] = factors.x;
+            odd[k] = factors.y;
+        }
+        uint other = surfel_of(first, 2u * i);
+        if (other < surfel_count) add_column(here, other, even);
+        other = surfel_of(first, 2u * i + 1u);
+        if (other < surfel_count) add_column(here, other, odd);
+    }
+    for (uint k = 0u; k < ROWS_A_BOUNCE; ++k) {
+        uint id = first + k * apart;
+        if (id >= surfel_count) return;
+        float scale = rows[id].x;
+        vec3 irradiance = scale * here.sum[k];
+        bounced[((bounce + 1u) % 2u) * surfel_count + id] = vec4(cells[id].albedo * irradiance, scale);
+        bounced[2u * surfel_count + id] = vec4(irradiance, 0.0);
+        cells[id].indirect += irradiance;
+    }
 }
