@@ -2,6 +2,7 @@
 
 #include "tests/window/desktop.hpp"
 #include "tests/window/app.hpp"
+#include "tests/window/light_drag.hpp"
 
 #include <algorithm>
 #include <chrono>
@@ -137,37 +138,6 @@ Label label_at_scale(float scale) {
     return label;
 }
 
-/// Seconds from an input to the picture that shows its effect, for each such picture so far.
-std::vector<double> latencies_of(const App& app) {
-    std::vector<double> latencies;
-    for (const Json& record : app.history()) {
-        if (!record["latency"].is_null()) latencies.push_back(record["latency"]);
-    }
-    return latencies;
-}
-
-/// Drags the light through the shipped Cornell box: a camera at (0, 1, 3.9) with this field of view looks
-/// along -Z, and the light is at (0, 1.6, 0).
-void check_latency(App& app) {
-    const Area scene = app.scene();
-    const double per_metre = scene.height / (2.0 * 3.9 * std::tan(0.685914 / 2.0));
-    const double x = scene.width / 2.0;
-    const double y = scene.height / 2.0 - 0.6 * per_metre;
-    app.press_button(x, y);
-    std::vector<double> latencies;
-    for (int step = 0; step < 1000 && latencies.size() < 7; ++step) {
-        app.move(x + 4.0 * (step % 40), y + step % 40);
-        std::this_thread::sleep_for(20ms);
-        if (step % 40 == 39) latencies = latencies_of(app);
-    }
-    app.release_button();
-    REQUIRE_MESSAGE(latencies.size() >= 7, app.log().dump());
-    std::ranges::sort(latencies);
-    // Measured alone: 0.45 s, on two cores. Three times that: machines may do other work.
-    CHECK(latencies[latencies.size() / 2] < 1.4);
-    MESSAGE("median latency ", latencies[latencies.size() / 2], " s, greatest ", latencies.back(), " s");
-}
-
 }  // namespace
 
 TEST_CASE("controls and text have the display's scale, and a window at rest uses next to nothing") {
@@ -190,7 +160,11 @@ TEST_CASE("the picture follows a dragged light; minimised it rests, restored it 
     const TextFile refining("refining.json", R"({"refinement": {"enabled": true, "frames": 65536}})");
     App app({.flags = {"--config", refining.path()}, .width = 1280, .height = 720});
     app.wait_for("refinement", [](const Json& record) { return record["refined"] > 1; });
-    check_latency(app);
+    std::vector<double> latencies = drag_light(app, 100);
+    REQUIRE_MESSAGE(latencies.size() >= 7, app.log().dump());
+    std::ranges::sort(latencies);
+    // Measured alone: 0.45 s, on two cores. Three times that: machines may do other work.
+    CHECK(latencies[latencies.size() / 2] < 1.4);
 
     minimise(app.display(), app.window());
     REQUIRE(comes_to_rest(app.process()));
