@@ -15,6 +15,7 @@
 #include "renderer/passes/indirect/vpl_gather.hpp"
 #include "renderer/passes/mirror/mirror_rays.hpp"
 #include "renderer/passes/output/accumulate.hpp"
+#include "renderer/passes/output/enlarge.hpp"
 #include "renderer/passes/output/tone_map.hpp"
 #include "renderer/passes/receivers/point_lighting.hpp"
 #include "renderer/passes/shading/deferred.hpp"
@@ -333,12 +334,14 @@ void add_sources(FrameGraph& graph, Gpu& gpu, const SharedFrame& shared, const S
     }
 }
 
-/// The surfaces of a view once more, in the size of its target, if the picture is smaller. `parts`: of the
-/// picture.
-std::optional<EnlargedSurfaces> enlarge_surfaces(FrameGraph& graph, Gpu& gpu, const SceneData& seen,
-                                                 glm::uvec2 target, const ViewData& view,
-                                                 const ViewHandles& out, const ViewFrame& parts) {
-    if (view.size == target || !parts.depth) return std::nullopt;
+/// Draws the picture to the target. If it has fewer pixels, the surfaces are found once more in the size of
+/// the target.
+void show(FrameGraph& graph, Gpu& gpu, const SceneData& seen, const Display& display, glm::uvec2 target,
+          const ViewData& view, const ViewHandles& out, const ViewFrame& parts) {
+    if (view.size == target) {
+        return add_tone_map(graph, gpu, *parts.radiance, out.target, out.picture, display);
+    }
+    const TextureHandle colours = add_tone_map(graph, gpu, *parts.radiance, view.size, display);
     graph.append_to_names(" (target's size)" + view_ending(parts.index));
     ViewData target_view = add_view_upload(graph, gpu, view.camera, target);
     target_view.workload = Workload::other;  // the same for every size of the picture
@@ -346,7 +349,7 @@ std::optional<EnlargedSurfaces> enlarge_surfaces(FrameGraph& graph, Gpu& gpu, co
         out.host ? add_host_surfaces(graph, gpu, *out.host, target_view, false, std::nullopt)
                  : add_depth_prepass(graph, gpu, seen, target_view);
     graph.append_to_names(view_ending(parts.index));
-    return EnlargedSurfaces{*parts.depth, in_target, target_view};
+    add_enlarge(graph, gpu, {colours, *parts.depth, in_target, target_view}, out.target, out.picture);
 }
 
 }  // namespace
@@ -421,9 +424,7 @@ void build_view(FrameGraph& graph, Gpu& gpu, const SharedFrame& shared, const Vi
     }
     if (out.averaged) parts.radiance = add_accumulate(graph, gpu, *parts.radiance, *out.averaged, view.size);
     extend(graph, shared, ExtensionPlace::before_tone_map, parts, out);
-    add_tone_map(graph, gpu, *parts.radiance,
-                 enlarge_surfaces(graph, gpu, seen, shape.target, view, out, parts), out.target, out.picture,
-                 display_of(configuration));
+    show(graph, gpu, seen, display_of(configuration), shape.target, view, out, parts);
     out.parts = parts;
 }
 

@@ -53,7 +53,7 @@ struct Plane {
 };
 
 Plane plane_at(ivec2 at, float depth, Surface surface) {
-    vec4 plane = tangent_plane(surface);
+    vec4 plane = tangent_plane(face_normal(surface), vec3((vec2(at) + 0.5) / view.target_size * 2.0 - 1.0, depth));
     return Plane(dot(plane.xy, 2.0 * vec2(along) / view.target_size), plane.z, depth);
 }
 

@@ -1,12 +1,13 @@
 // Whether pixels lie on the same surface. See theory.md, "Same surface". For files that include view.glsl.
-#include "surfaces/surface.glsl"
 
 const float SAME_NORMAL = 0.9;  // smallest cosine between normals of the same surface
 
-// Tangent plane of a surface in clip space: the dot product with (x, y, z, 1), in normalised device coordinates, is the
-// distance from it in widths of a pixel at that depth.
-vec4 tangent_plane(Surface surface) {
-    vec3 normal = face_normal(surface);
-    vec4 plane = vec4(normal, -dot(normal, surface.position)) * view.world_from_clip;
-    return plane * (0.5 * view.target_size.y / length(view.world_from_clip[1].xyz));
+// The plane with this normal through a point in normalised device coordinates, in clip space: the dot product with
+// (x, y, z, 1), in normalised device coordinates, is the distance from it in widths of a pixel at that depth.
+vec4 tangent_plane(vec3 normal, vec3 point) {
+    mat4 m = view.world_from_clip;
+    vec4 w = vec4(m[0].w, m[1].w, m[2].w, m[3].w);
+    vec4 plane = vec4(normal, 0.0) * m;
+    plane -= dot(plane, vec4(point, 1.0)) / dot(w, vec4(point, 1.0)) * w;
+    return plane * (0.5 * view.target_size.y / length(m[1].xyz));
 }

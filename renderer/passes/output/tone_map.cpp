@@ -5,6 +5,7 @@
 #include <cstddef>
 
 #include <candela/graph/execute.hpp>
+#include <candela/workload.hpp>
 #include "renderer/passes/output/exposure.hpp"
 #include "shaders/bindings.glsl"
 
@@ -16,9 +17,9 @@ std::uint32_t number_of(std::optional<ToneCurve> curve) {
     return curve ? numbers.at(static_cast<std::size_t>(*curve)) : TONE_CURVE_NONE;
 }
 
-/// With the texture at UNIT_RADIANCE and, if the exposure is automatic, what find_exposure has written.
+/// To the bound framebuffer. With the texture at UNIT_RADIANCE and, if the exposure is automatic, what
+/// find_exposure has written.
 void draw(Gpu& gpu, const gl::Program& program, const Target& target, const Display& display) {
-    gpu.set_target(target);
     gpu.draw_fullscreen(program, {{"target_origin", glm::vec2(target.origin)},
                                   {"target_size", glm::vec2(target.size)},
                                   {"exposure", display.exposure},
@@ -31,17 +32,25 @@ std::vector<std::string> stages_of_tone_map() {
     return {"output/fullscreen.vert", "output/tone_map.frag"};
 }
 
-std::vector<std::string> variant_of(const Display& display, bool guided) {
+std::vector<std::string> variant_of(const Display& display) {
     std::vector<std::string> defined;
     if (display.automatic) defined.emplace_back("AUTOMATIC");
-    if (guided) defined.emplace_back("GUIDED");
     return defined;
 }
 
-void read_surfaces(Pass& pass, const EnlargedSurfaces& surfaces) {
-    read_view(pass, surfaces.target_view);
-    read_geometry(pass, surfaces.in_target);
-    pass.read(surfaces.depth, {Usage::sampled, UNIT_PICTURE_DEPTH});
+using Exposure = std::optional<BufferHandle<glm::vec2>>;
+
+Exposure add_exposure_of(FrameGraph& graph, Gpu& gpu, TextureHandle radiance, const Display& display) {
+    return display.automatic ? Exposure(add_exposure(graph, gpu, radiance)) : std::nullopt;
+}
+
+/// Declares what the pass reads. Returns its program.
+const gl::Program& read_inputs(Pass& pass, Gpu& gpu, TextureHandle radiance, const Exposure& exposure,
+                               const Display& display) {
+    pass.read(radiance, {Usage::sampled, UNIT_RADIANCE});
+    if (exposure) pass.read(*exposure, {Usage::storage, BINDING_EXPOSURE});
+    pass.parameter(display);
+    return gpu.program(stages_of_tone_map(), variant_of(display));
 }
 
 }  // namespace
@@ -57,21 +66,31 @@ Display display_of(const Configuration& configuration) {
             .opaque = settings.enabled};
 }
 
-void add_tone_map(FrameGraph& graph, Gpu& gpu, TextureHandle radiance,
-                  const std::optional<EnlargedSurfaces>& surfaces, ValueHandle<Target> target,
+void add_tone_map(FrameGraph& graph, Gpu& gpu, TextureHandle radiance, ValueHandle<Target> target,
                   TextureHandle picture, const Display& display) {
-    std::optional<BufferHandle<glm::vec2>> exposure;
-    if (display.automatic) exposure = add_exposure(graph, gpu, radiance);
+    const Exposure exposure = add_exposure_of(graph, gpu, radiance, display);
     graph.add("tone-map", [&](Pass& pass) {
-        pass.read(radiance, {Usage::sampled, UNIT_RADIANCE});
-        if (exposure) pass.read(*exposure, {Usage::storage, BINDING_EXPOSURE});
-        if (surfaces) read_surfaces(pass, *surfaces);
+        const gl::Program& program = read_inputs(pass, gpu, radiance, exposure, display);
         pass.read(target);
-        pass.parameter(display);
-        const gl::Program& program =
-            gpu.program(stages_of_tone_map(), variant_of(display, surfaces.has_value()));
         (void)pass.write(picture, Usage::layer_target);
-        pass.run([=, &gpu, &program](Execution& run) { draw(gpu, program, run.value(target), display); });
+        pass.run([=, &gpu, &program](Execution& run) {
+            gpu.set_target(run.value(target));
+            draw(gpu, program, run.value(target), display);
+        });
+    });
+}
+
+TextureHandle add_tone_map(FrameGraph& graph, Gpu& gpu, TextureHandle radiance, glm::uvec2 size,
+                           const Display& display) {
+    const Exposure exposure = add_exposure_of(graph, gpu, radiance, display);
+    return graph.add("tone-map", [&](Pass& pass) {
+        pass.tag(Workload::pixels);
+        const gl::Program& program = read_inputs(pass, gpu, radiance, exposure, display);
+        const Format format = display.encoded ? Format::rgba8 : Format::rgba32f;
+        const TextureHandle picture =
+            pass.write(graph.texture("picture", {size, format}), Usage::colour_target);
+        pass.run([=, &gpu, &program](Execution&) { draw(gpu, program, {.size = size}, display); });
+        return picture;
     });
 }
 
@@ -83,7 +102,8 @@ void tone_map(Gpu& gpu, const Target& target, const Display& display) {
         find_exposure(gpu, gpu.programs().compiled({exposure_stage}, {}));
         gpu.gl().MemoryBarrier(GL_SHADER_STORAGE_BARRIER_BIT);
     }
-    draw(gpu, gpu.programs().compiled(stages_of_tone_map(), variant_of(display, false)), target, display);
+    gpu.set_target(target);
+    draw(gpu, gpu.programs().compiled(stages_of_tone_map(), variant_of(display)), target, display);
 }
 
 }  // namespace candela

@@ -2,13 +2,13 @@
 
 #include <optional>
 
+#include <glm/vec2.hpp>
+
 #include <candela/configuration.hpp>
 
 #include <candela/graph/frame_graph.hpp>
 #include <candela/view.hpp>
 #include "renderer/gpu/gpu.hpp"
-#include "renderer/passes/surfaces/surfaces.hpp"
-#include "renderer/passes/view/view.hpp"
 
 namespace candela {
 
@@ -25,20 +25,15 @@ struct Display {
 /// Without tone mapping, all are linear, and no exposure is automatic.
 [[nodiscard]] Display display_of(const Configuration& configuration);
 
-/// Solid surfaces of a picture that is smaller than its target.
-struct EnlargedSurfaces {
-    TextureHandle depth;   ///< of the picture
-    Surfaces in_target;    ///< with the resolution of the target: depth and normals
-    ViewData target_view;  ///< of that size
-};
-
 /// Adds node `tone-map` (raster): writes radiance, or what else the picture shows, to the host's target.
-/// Depends on `radiance` and `target`, whose framebuffer is the object of `picture`, an imported texture.
-/// With `surfaces`, values are hardly interpolated across their edges: see enlarge.glsl.
-/// Before it, adds node `exposure` if the exposure is automatic.
-void add_tone_map(FrameGraph& graph, Gpu& gpu, TextureHandle radiance,
-                  const std::optional<EnlargedSurfaces>& surfaces, ValueHandle<Target> target,
+/// Depends on `radiance` and `target`, whose framebuffer is the object of `picture`, an
+/// imported texture. Before it, adds node `exposure` if the exposure is automatic.
+void add_tone_map(FrameGraph& graph, Gpu& gpu, TextureHandle radiance, ValueHandle<Target> target,
                   TextureHandle picture, const Display& display);
+
+/// The same to a texture of the picture's size in pixels: rgba8 if the colours are encoded, else rgba32f.
+[[nodiscard]] TextureHandle add_tone_map(FrameGraph& graph, Gpu& gpu, TextureHandle radiance, glm::uvec2 size,
+                                         const Display& display);
 
 /// Does the work of these nodes for pictures from elsewhere. The texture at UNIT_RADIANCE is drawn to the
 /// target, with bilinear scaling if its size differs. Changes the draw framebuffer, the viewport and what is

@@ -1,25 +1,24 @@
-// Radiance at a pixel of a target that has another size than the picture: interpolated bilinearly between the nearest
-// four pixels of the picture. With GUIDED, those that do not show the surface that the pixel of the target shows hardly
-// count, so that edges have the resolution of the target.
+// Draws a picture to a target that has more pixels: interpolated bilinearly between the nearest four pixels of the
+// picture. Of these, those that do not show the surface that the pixel of the target shows hardly count, so that edges
+// have the resolution of the target. One fragment per pixel of the target.
 #include "bindings.glsl"
-
-layout(binding = UNIT_RADIANCE) uniform sampler2D radiance;
-uniform vec2 target_size;  // pixels
-
-#ifdef GUIDED
-
 #include "surfaces/visible_surface.glsl"
 #include "surfaces/tangent_plane.glsl"
 
-// Of the picture; the view and the textures of visible_surface.glsl are of the target.
+// The view and the textures of visible_surface.glsl are of the target.
+layout(binding = UNIT_RADIANCE) uniform sampler2D picture;
 layout(binding = UNIT_PICTURE_DEPTH) uniform sampler2D picture_depth;
 
+uniform vec2 target_origin;  // in the framebuffer, pixels
+
+layout(location = 0) out vec4 colour;
+
 // The surface at a pixel of the target. Where there is none, the plane at infinity.
-vec4 plane_at(ivec2 at) {
+vec4 plane_at(vec2 pixel) {
     const float far_off = 1e9;
-    float depth = texelFetch(surface_depth, at, 0).r;
+    float depth = texelFetch(surface_depth, ivec2(pixel), 0).r;
     if (depth == 0.0) return vec4(0.0, 0.0, far_off, 0.0);
-    return tangent_plane(visible_surface(at, depth, vec3(0.0)));
+    return tangent_plane(visible_face_normal(ivec2(pixel)), vec3(pixel / view.target_size * 2.0 - 1.0, depth));
 }
 
 // Factors on the weights of 2 × 2 pixels of the picture, `first` being the lowest of them. They fall with the square of
@@ -31,23 +30,21 @@ vec4 on_plane(vec4 plane, vec2 first, vec2 size) {
     vec2 device = (first + 0.5) / size * 2.0 - 1.0;
     vec2 step = plane.xy * 2.0 / size;
     vec4 off = dot(plane.xyw, vec3(device, 1.0)) + vec4(0.0, step.x, step.y, step.x + step.y) + plane.z * depths;
-    off *= size.y / target_size.y / half_at;  // from pixels of the target
+    off *= size.y / view.target_size.y / half_at;  // from pixels of the target
     return 1.0 / (1.0 + off * off);
 }
 
-#endif
-
-vec4 enlarged_radiance(vec2 pixel, vec2 size) {
-    vec2 at = pixel / target_size * size - 0.5;
+void main() {
+    vec2 pixel = gl_FragCoord.xy - target_origin;
+    vec2 size = vec2(textureSize(picture, 0));
+    vec2 at = pixel / view.target_size * size - 0.5;
     vec2 first = floor(at);
     vec2 share = at - first;
     vec4 weights = vec4(1.0 - share.x, share.x, 1.0 - share.x, share.x) * vec4(1.0 - share.yy, share.yy);
-#ifdef GUIDED
-    weights *= on_plane(plane_at(ivec2(pixel)), first, size);
+    weights *= on_plane(plane_at(pixel), first, size);
     weights /= weights.x + weights.y + weights.z + weights.w;
-#endif
     ivec2 low = ivec2(max(first, 0.0));
     ivec2 high = ivec2(min(first + 1.0, size - 1.0));
-    return weights.x * texelFetch(radiance, low, 0) + weights.y * texelFetch(radiance, ivec2(high.x, low.y), 0) +
-           weights.z * texelFetch(radiance, ivec2(low.x, high.y), 0) + weights.w * texelFetch(radiance, high, 0);
+    colour = weights.x * texelFetch(picture, low, 0) + weights.y * texelFetch(picture, ivec2(high.x, low.y), 0) +
+             weights.z * texelFetch(picture, ivec2(low.x, high.y), 0) + weights.w * texelFetch(picture, high, 0);
 }
