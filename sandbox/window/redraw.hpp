@@ -5,11 +5,13 @@
 namespace candela::sandbox {
 
 /// When a window is to be drawn. Without a GPU, drawing it takes time from the picture: so while nothing
-/// happens it is not drawn, and while only the pointer moves, no more often than every `between_moves`.
+/// happens it is not drawn, and while only the pointer moves, no more often than every `between_moves`, or
+/// every `while_rendering` if a picture is on its way, with which the window is drawn anyway.
 class Redraw {
  public:
     using Clock = std::chrono::steady_clock;
     static constexpr std::chrono::milliseconds between_moves{50};
+    static constexpr std::chrono::milliseconds while_rendering{100};
 
     /// Something has changed. Panels need a few frames to settle.
     void changed() { frames_ = settling; }
@@ -28,8 +30,9 @@ class Redraw {
     [[nodiscard]] bool has_changes() const { return frames_ > 0; }
     [[nodiscard]] bool has_moves() const { return pointer_moved_; }
     /// Whether to draw now.
-    [[nodiscard]] bool is_due(Clock::time_point now) const {
-        return frames_ > 0 || (pointer_moved_ && now - last_ >= between_moves);
+    [[nodiscard]] bool is_due(Clock::time_point now, bool rendering = false) const {
+        return frames_ > 0 ||
+               (pointer_moved_ && now - last_ >= (rendering ? while_rendering : between_moves));
     }
 
  private:

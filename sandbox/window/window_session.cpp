@@ -78,7 +78,8 @@ void WindowSession::step() {
         submit();
         if (options_.frames) show(thread_->wait_for(state_.submitted));
     }
-    if (options_.frames || !busy_words().empty() || redraw_.is_due(Clock::now())) draw();
+    const bool rendering = state_.document && !state_.is_answered();
+    if (options_.frames || !busy_words().empty() || redraw_.is_due(Clock::now(), rendering)) draw();
 }
 
 /// Seconds that the window may sleep if no event arrives.

@@ -60,6 +60,13 @@ void draw_probed(SessionState& state) {
     if (state.shown->probed) draw_probe(words_of(*state.shown->probed), scene);
 }
 
+/// What shows where there is no picture. Pictures cover it: without a GPU, filling the window takes as long as
+/// drawing one.
+void draw_ground(glm::vec2 window) {
+    ImGui::GetBackgroundDrawList()->AddRectFilled({0.0F, 0.0F}, {window.x, window.y},
+                                                  IM_COL32(24, 24, 26, 255));
+}
+
 /// A tab, whose content `draw` draws while it is open.
 template <class F>
 void tab(const char* name, const char* tip, const F& draw) {
@@ -107,11 +114,10 @@ bool draw_panel_button(bool panel, const Rectangle& at) {
 }  // namespace
 
 void draw_scene(SessionState& state, glm::vec2 window) {
-    ImGui::GetBackgroundDrawList()->AddRectFilled({0.0F, 0.0F}, {window.x, window.y},
-                                                  IM_COL32(24, 24, 26, 255));
-    if (!state.shown || !state.document) return;
+    if (!state.shown || !state.document) return draw_ground(window);
     const RenderedFrame& shown = *state.shown;
     if (state.selection.resource && shown.inspection) {
+        draw_ground(window);
         return draw_resource(*state.selection.resource, state.selection.inspection, *shown.inspection,
                              shown.elements, state.layout.scene);
     }

@@ -43,6 +43,8 @@ TEST_CASE("while only the pointer moves, it is drawn now and then") {
     CHECK(redraw.has_moves());
     CHECK_FALSE(redraw.is_due(soon));
     CHECK(redraw.is_due(start + Redraw::between_moves));
+    CHECK_FALSE(redraw.is_due(start + Redraw::between_moves, true));  // a picture follows
+    CHECK(redraw.is_due(start + Redraw::while_rendering, true));
     redraw.draw(start + Redraw::between_moves);
     CHECK_FALSE(redraw.has_moves());
     redraw.pointer_moved();
