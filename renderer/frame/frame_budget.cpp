@@ -8,8 +8,15 @@ namespace candela {
 namespace {
 
 // From best to lowest. Interleaving comes first, because it costs hardly any quality.
-constexpr std::array<Quality, 8> qualities{
-    {{1.0F, 1}, interleaved_quality, {0.8F, 8}, {0.65F, 8}, {0.5F, 8}, {0.4F, 8}, {0.32F, 8}, {0.25F, 8}}};
+constexpr std::array<Quality, 9> qualities{{{1.0F, 1},
+                                            interleaved_quality,
+                                            {0.8F, 8},
+                                            {0.65F, 8},
+                                            {0.5F, 8},
+                                            {0.4F, 8},
+                                            {0.32F, 8},
+                                            {0.25F, 8},
+                                            lowest_quality}};
 
 constexpr double full = 0.9;   // share of the budget that a frame of the same or lower quality may take
 constexpr double roomy = 0.7;  // share of the budget that a frame of better quality may take

@@ -26,6 +26,7 @@ struct FrameCost {
 
 /// Of the qualities below the best, all with the same passes: one with full resolution.
 inline constexpr Quality interleaved_quality{1.0F, 8};
+inline constexpr Quality lowest_quality{0.2F, 8};
 
 /// The best quality whose expected time fits the budget, based on one measured frame; the lowest quality if
 /// none fits. A better quality than the measured one must fit with a larger margin, so that the choice does

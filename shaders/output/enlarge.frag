@@ -22,10 +22,10 @@ vec4 plane_at(vec2 pixel) {
 }
 
 // Factors on the weights of 2 × 2 pixels of the picture, `first` being the lowest of them. They fall with the square of
-// the distance from the plane, and are 1/2 at a twentieth of a pixel of the picture: the pixels of a surface that curves
+// the distance from the plane, and are 1/2 at a fortieth of a pixel of the picture: the pixels of a surface that curves
 // keep their weights, those behind an edge lose them.
 vec4 on_plane(vec4 plane, vec2 first, vec2 size) {
-    const float half_at = 0.05;
+    const float half_at = 0.025;
     vec4 depths = textureGather(picture_depth, (first + 1.0) / size).wzxy;
     vec2 device = (first + 0.5) / size * 2.0 - 1.0;
     vec2 step = plane.xy * 2.0 / size;

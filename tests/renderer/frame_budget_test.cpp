@@ -32,6 +32,10 @@ namespace {
 
 constexpr glm::uvec2 size{48, 32};
 
+glm::uvec2 lowest_size(glm::uvec2 target) {
+    return rendered_size(target, lowest_quality);
+}
+
 /// Notes the sizes of the dispatches by the pass that makes them, of all renderers made with `noting`.
 class Dispatches {
  public:
@@ -106,9 +110,9 @@ std::size_t count_pixels(const Picture& picture, const F& holds) {
     return count;
 }
 
-/// Whether another surface is seen within a pixel of a picture with a quarter of the sides.
+/// Whether another surface is seen within a pixel of the smallest picture.
 bool is_near_edge(const Picture& picture, glm::ivec2 at) {
-    constexpr int near = 4;
+    constexpr int near = 5;
     const glm::ivec2 first = glm::max(at - near, 0);
     const glm::ivec2 last = glm::min(at + near, glm::ivec2(picture.size) - 1);
     for (int y = first.y; y <= last.y; ++y) {
@@ -140,7 +144,7 @@ class FrameBudgetTests : public PathFixture {
         }
         return picture;
     }
-    /// A frame with a quarter of the sides of the target, by a new renderer, while the light moves.
+    /// A frame with as few pixels as can be, by a new renderer, while the light moves.
     Picture coarse_picture(Configuration configuration, const std::optional<HostSurfaces>& surfaces,
                            const RenderTarget& target) {
         TestedRenderer coarse(context->get_proc());
@@ -152,7 +156,7 @@ class FrameBudgetTests : public PathFixture {
             coarse.render(scene.world, {&view, 1});
             static_cast<void>(coarse.take_frames(true));
         }
-        CHECK(coarse.report().rendered_size == target.target().size / 4U);
+        CHECK(coarse.report().rendered_size == lowest_size(target.target().size));
         return target.read();
     }
     /// The same view, by a new renderer without a budget.
@@ -186,7 +190,7 @@ class FrameBudgetTests : public PathFixture {
             noted.render(scene.world, {&view, 1});
             frames = noted.take_frames(true);
         }
-        CHECK(noted.report().rendered_size == (budget_ms > 0.0F ? target_size / 4U : target_size));
+        CHECK(noted.report().rendered_size == (budget_ms > 0.0F ? lowest_size(target_size) : target_size));
         return work_of(frames.back(), Dispatches::take(),
                        nlohmann::json::parse(noted.describe(GraphFormat::json)));
     }
@@ -285,7 +289,7 @@ TEST_CASE("the best quality that keeps to the budget is chosen") {
     CHECK(choose_quality(cost, whole, 1, 120.0) == Quality{1.0F, 8});  // 92.5 ms
     CHECK(choose_quality(cost, whole, 1, 100.0) == Quality{0.8F, 8});  // 92.5 ms leave too little margin
     CHECK(choose_quality(cost, whole, 1, 40.0) == Quality{0.5F, 8});
-    CHECK(choose_quality(cost, whole, 1, 11.0) == Quality{0.25F, 8});  // no quality does
+    CHECK(choose_quality(cost, whole, 1, 11.0) == lowest_quality);  // no quality does
     // If frames are interleaved anyway, more interleaving gains nothing.
     CHECK(choose_quality(cost, {1.0F, 8}, 8, 1000.0) == whole);
     CHECK(choose_quality(cost, {1.0F, 8}, 8, 150.0).scale < 1.0F);
@@ -304,7 +308,7 @@ TEST_CASE("a better quality that would be left again at once is not chosen") {
 
 TEST_CASE("at least one pixel is rendered") {
     CHECK(rendered_size({1280, 720}, {0.375F, 8}) == glm::uvec2(480, 270));
-    CHECK(rendered_size({1, 2}, {0.25F, 8}) == glm::uvec2(1, 1));
+    CHECK(rendered_size({1, 2}, lowest_quality) == glm::uvec2(1, 1));
     CHECK(rendered_size({511, 513}, {}) == glm::uvec2(511, 513));
 }
 
@@ -312,7 +316,7 @@ TEST_CASE_FIXTURE(FrameBudgetTests,
                   "frames have a lower quality while something moves, and full quality at rest") {
     start(1e-3F);
     const Picture coarse = moving();
-    CHECK(renderer.report().rendered_size == size / 4U);
+    CHECK(renderer.report().rendered_size == lowest_size(size));
     CHECK(renderer.report().vpls->interleave == 8);
     CHECK(is_sane(coarse));
     const Picture whole = fresh_picture();
@@ -324,7 +328,7 @@ TEST_CASE_FIXTURE(FrameBudgetTests,
     CHECK(renderer.report().rendered_size == size);
     move_camera();
     static_cast<void>(render(scene, size));
-    CHECK(renderer.report().rendered_size == size / 4U);
+    CHECK(renderer.report().rendered_size == lowest_size(size));
 }
 
 TEST_CASE_FIXTURE(FrameBudgetTests, "edges have the resolution of the target, whatever the quality") {
