@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <chrono>
+#include <exception>
 #include <utility>
 
 #include <fmt/format.h>
@@ -21,6 +22,9 @@ enum Need : std::uint8_t {
     certain = 2      // it runs even if its inputs do not change
 };
 
+/// Ends a pass whose frame is not wanted any more.
+struct Unwanted : std::exception {};
+
 using Clock = std::chrono::steady_clock;
 
 double milliseconds(Clock::duration duration) {
@@ -30,6 +34,10 @@ double milliseconds(Clock::duration duration) {
 }  // namespace
 
 // The frame
+
+void Execution::end_if_unwanted() const {
+    if (wanted_ != nullptr && !(*wanted_)()) throw Unwanted();
+}
 
 const FrameRecord& GraphRuntime::run(const World& world, Timing timing, const std::function<bool()>& wanted) {
     if (!graph_) throw GraphError("there is no frame graph");
@@ -46,6 +54,7 @@ const FrameRecord& GraphRuntime::run(const World& world, Timing timing, const st
     if (record_.complete) std::fill(state_->turned.begin(), state_->turned.end(), std::uint8_t{0});
     record_.complete = false;
     Execution execution(*this, world);
+    if (wanted) execution.wanted_ = &wanted;
     Clock::time_point last = timing == Timing::on ? Clock::now() : Clock::time_point{};
     for (std::uint32_t position = 0; position < state_->step_count(); ++position) {
         const detail::Step& step = state_->steps[position];
@@ -63,7 +72,11 @@ const FrameRecord& GraphRuntime::run(const World& world, Timing timing, const st
 
         if (wanted && !wanted()) return record_;
         execution.position_ = position;
-        run_step(execution, changed);
+        try {
+            run_step(execution, changed);
+        } catch (const Unwanted&) {
+            return record_;
+        }
         marked_too_many |= !renewed_results(step);
         PassRecord& record = record_.passes[position];
         record.ran = true;

@@ -7,6 +7,15 @@ void ComputeSteps::run(const gl::Program& program, const Groups& groups, const g
     gpu_.gl().DispatchCompute(groups.x, groups.y, groups.z);
 }
 
+void ComputeSteps::run_rows(const Execution& run, const gl::Program& program, const Groups& groups,
+                            const gl::Uniforms& uniforms) {
+    const std::uint32_t rows = run.may_end() ? 1 : groups.y;
+    for (std::uint32_t first = 0; first < groups.y; first += rows) {
+        run.end_if_unwanted();
+        this->run(program, {groups.x, rows, groups.z}, uniforms + gl::Uniforms{{"first_row", first}});
+    }
+}
+
 void ComputeSteps::run_indirect(const gl::Program& program, const gl::Uniforms& uniforms, GLintptr offset) {
     begin(program, uniforms);
     gpu_.gl().DispatchComputeIndirect(offset);

@@ -2,6 +2,7 @@
 
 #include <cstdint>
 
+#include <candela/graph/execute.hpp>
 #include "renderer/gpu/gpu.hpp"
 
 namespace candela {
@@ -19,6 +20,11 @@ class ComputeSteps {
     explicit ComputeSteps(const Gpu& gpu) : gpu_(gpu) {}
 
     void run(const gl::Program& program, const Groups& groups, const gl::Uniforms& uniforms = {});
+    /// The same in one dispatch, or if the frame may be given up, in one for each row of work groups (y). It
+    /// may end between them. The shader adds `first_row` to gl_WorkGroupID.y: shading/pixel_block.glsl. No
+    /// row depends on another.
+    void run_rows(const Execution& run, const gl::Program& program, const Groups& groups,
+                  const gl::Uniforms& uniforms);
     /// The numbers of groups are at `offset`, in bytes, in the buffer that the pass reads with
     /// Usage::indirect, or has bound for that.
     void run_indirect(const gl::Program& program, const gl::Uniforms& uniforms = {}, GLintptr offset = 0);

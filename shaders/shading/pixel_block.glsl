@@ -13,7 +13,10 @@
 
 layout(local_size_x = GROUP_SIDE, local_size_y = GROUP_SIDE) in;
 
+uniform uint first_row;  // of blocks, in this dispatch: see ComputeSteps::run_rows
+
 // The invocation's pixel s; may lie outside the target.
 ivec2 block_pixel(int s) {
-    return PIXEL_BLOCK * ivec2(gl_WorkGroupID.xy) + ivec2(gl_LocalInvocationID.xy) + GROUP_SIDE * ivec2(s & 1, s >> 1);
+    ivec2 block = ivec2(gl_WorkGroupID.x, first_row + gl_WorkGroupID.y);
+    return PIXEL_BLOCK * block + ivec2(gl_LocalInvocationID.xy) + GROUP_SIDE * ivec2(s & 1, s >> 1);
 }

@@ -371,6 +371,46 @@ TEST_CASE_FIXTURE(GraphFixture, "graph run: a frame that is abandoned goes on in
     CHECK(asked == 1);
 }
 
+TEST_CASE_FIXTURE(GraphFixture, "graph run: a pass that ends between its parts runs again") {
+    const auto knob = graph.import_value<int>("knob");
+    int parts = 0;
+    bool had_result = false;
+    bool could_end = false;
+    const auto sum = graph.add("add up", [&](Pass& pass) {
+        pass.read(knob);
+        const auto written = pass.write(graph.value<int>("sum"));
+        pass.run([&, knob, written](Execution& run) {
+            had_result = run.has_result();
+            could_end = run.may_end();
+            run.set(written, 0);  // not complete
+            for (parts = 0; parts < 3; ++parts) run.end_if_unwanted();
+            run.set(written, 3 * run.value(knob));
+        });
+        return written;
+    });
+    int shown = 0;
+    graph.add("show", [&](Pass& pass) {
+        pass.read(sum);
+        pass.side_effect();
+        pass.run([&, sum](Execution& run) { shown = run.value(sum); });
+    });
+    switch_to();
+    runtime.set(knob, 2);
+    CHECK(run() == "add up show");
+    CHECK_FALSE(could_end);
+    runtime.set(knob, 3);
+    int asked = 0;
+    const FrameRecord& ended = runtime.run(world, Timing::off, [&] { return ++asked < 4; });
+    CHECK_FALSE(ended.complete);
+    CHECK(ran(ended) == "");
+    CHECK(parts == 2);
+    CHECK(had_result);
+    CHECK(could_end);
+    CHECK(run() == "add up show");
+    CHECK_FALSE(had_result);
+    CHECK(shown == 9);
+}
+
 TEST_CASE_FIXTURE(
     GraphFixture,
     "graph run: the back end is told passes, their targets, and also barriers of skipped passes") {

@@ -26,10 +26,11 @@ class AbandonedFrames : public RenderFixture {
         REQUIRE(patient.configure(configuration).empty());
     }
 
-    /// Abandons a frame before the pass after this many. Returns whether it was complete before that.
-    bool abandon(int passes) {
+    /// Abandons a frame when it is asked for after this many times: before a pass, or between parts of one.
+    /// Returns whether it was complete before that.
+    bool abandon(int times) {
         const RenderView view{.camera = scene.camera, .target = target.target()};
-        return renderer.render(scene.world, {&view, 1}, {.wanted = [&passes] { return passes-- > 0; }});
+        return renderer.render(scene.world, {&view, 1}, {.wanted = [&times] { return times-- > 0; }});
     }
 
     Picture complete() {
@@ -96,7 +97,7 @@ TEST_CASE_FIXTURE(AbandonedFrames, "a frame that is abandoned after any pass goe
             const Picture before = target.read();
             ended = abandon(after);
             if (!ended) {
-                CHECK(passes_run() == after);
+                CHECK(passes_run() <= after);
                 CHECK(target.read() == before);
                 CHECK_FALSE(renderer.settled());
             }

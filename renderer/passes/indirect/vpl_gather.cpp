@@ -23,14 +23,14 @@ constexpr std::uint32_t least_rows = 60;
 
 /// Gathers in as many dispatches as needed for each to evaluate at most `most` VPLs per pixel. Each adds to
 /// the sum of the ones before.
-void gather(const Gpu& gpu, const gl::Program& program, glm::uvec2 size, std::uint32_t interleave,
+void gather(const Gpu& gpu, const Execution& run, const gl::Program& program, glm::uvec2 size, std::uint32_t interleave,
             std::uint32_t vpl_count, std::uint32_t most) {
     const glm::uvec2 of_class = (size + interleave - 1U) / interleave;
     const std::uint32_t classes = interleave * interleave;
     const Groups blocks{groups(of_class.x, PIXEL_BLOCK), groups(of_class.y, PIXEL_BLOCK), classes};
     ComputeSteps steps(gpu);
     for (const gl::Uniforms& part : loop_parts(groups(vpl_count, classes), most)) {
-        steps.run(program, blocks, part + gl::Uniforms{{"interleave", interleave}});
+        steps.run_rows(run, program, blocks, part + gl::Uniforms{{"interleave", interleave}});
     }
 }
 
@@ -144,7 +144,7 @@ GatheredVpls add_vpl_gather(FrameGraph& graph, Gpu& gpu, const Surfaces& surface
             gpu.program({"indirect/vpl_gather.comp"},
                         gathered_variant(out.light, surface_variant(surfaces, vpl_light_variant(light))));
         pass.run([=, &gpu, &program](Execution& run) {
-            gather(gpu, program, view.size, interleave, run.value(light.vpls.counts).sources(),
+            gather(gpu, run, program, view.size, interleave, run.value(light.vpls.counts).sources(),
                    max_vpls_per_invocation(light));
         });
         return out;

@@ -23,7 +23,7 @@ TextureHandle add_deferred(FrameGraph& graph, Gpu& gpu, const Surfaces& surfaces
             bind_lighting(gpu, lighting);
             ComputeSteps steps(gpu);
             for (const gl::Uniforms& part : lighting_parts(run, lighting)) {
-                steps.run(program, blocks, part);
+                steps.run_rows(run, program, blocks, part);
             }
         });
         return radiance;

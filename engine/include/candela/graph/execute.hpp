@@ -109,6 +109,14 @@ class CANDELA_API Execution {
         return std::ranges::any_of(reads, [this](ResourceHandle read) { return changed(read); });
     }
 
+    /// Whether the host may give the frame up while it runs: see GraphRuntime::run. A pass that takes long
+    /// then does its work in parts, and calls `end_if_unwanted` between them.
+    [[nodiscard]] bool may_end() const { return wanted_ != nullptr; }
+    /// Asks the host whether the frame is still wanted. If not, ends the pass and the frame by an exception,
+    /// which GraphRuntime::run catches. The pass then counts as not having run, and has no result that it
+    /// could keep.
+    void end_if_unwanted() const;
+
     /// Sets a value that the pass writes. If T has operator== and the new content equals the old, the readers
     /// of the value do not run again because of it.
     template <class T>
@@ -149,6 +157,7 @@ class CANDELA_API Execution {
 
     GraphRuntime& runtime_;
     const World& world_;
+    const std::function<bool()>* wanted_ = nullptr;  // null: nobody is to be asked
     std::uint32_t position_ = 0;
     bool has_no_result_ = true;  // the running pass has no previous result that it could keep
 };
@@ -214,8 +223,8 @@ class CANDELA_API GraphRuntime {
     /// pass uses was not bound or set. Exceptions from a pass pass through: that pass then counts as not
     /// having run, and the next `run` runs it again; passes that had completed keep their results.
     ///
-    /// `wanted` is asked before each pass that runs. If it returns false, the run ends there, and the record
-    /// is not `complete`. The next run goes on with the same frame: it runs the passes that are left, and
+    /// `wanted` is asked before each pass that runs, and by passes between parts of their work. If it returns
+    /// false, the run ends there, and the record is not `complete`. The next run goes on with the same frame: it runs the passes that are left, and
     /// those whose inputs have changed meanwhile. Histories are those of the last complete frame, also after
     /// an exception, but not if `switch_to` follows it.
     ///
