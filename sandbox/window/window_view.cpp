@@ -60,8 +60,8 @@ void draw_probed(SessionState& state) {
     if (state.shown->probed) draw_probe(words_of(*state.shown->probed), scene);
 }
 
-/// What shows where there is no picture. Pictures cover it: without a GPU, filling the window takes as long as
-/// drawing one.
+/// What shows where there is no picture. Pictures cover it: without a GPU, filling the window takes as long
+/// as drawing one.
 void draw_ground(glm::vec2 window) {
     ImGui::GetBackgroundDrawList()->AddRectFilled({0.0F, 0.0F}, {window.x, window.y},
                                                   IM_COL32(24, 24, 26, 255));

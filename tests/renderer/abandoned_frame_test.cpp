@@ -8,6 +8,7 @@
 
 #include <candela/scene/components.hpp>
 #include "renderer/facade/device_of.hpp"
+#include "shaders/bindings.glsl"
 #include "tests/renderer/scene_builder.hpp"
 
 TEST_SUITE("abandoned frames") {
@@ -107,6 +108,15 @@ TEST_CASE_FIXTURE(AbandonedFrames, "a frame that is abandoned after any pass goe
         CHECK(passes > 1);
         passes = 0;
     }
+}
+
+TEST_CASE_FIXTURE(AbandonedFrames, "the host is also asked between rows of blocks of pixels") {
+    configure_both(small_configuration());
+    const RenderTarget tall(device, {16, 3 * PIXEL_BLOCK});
+    const RenderView view{.camera = scene.camera, .target = tall.target()};
+    int asked = 0;
+    CHECK(renderer.render(scene.world, {&view, 1}, {.wanted = [&asked] { return ++asked > 0; }}));
+    CHECK(asked == passes_run() + 3);  // deferred; so few VPLs are not gathered before
 }
 
 TEST_CASE_FIXTURE(AbandonedFrames, "what changes before the frame goes on is in its picture") {

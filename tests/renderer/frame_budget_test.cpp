@@ -361,17 +361,14 @@ TEST_CASE_FIXTURE(FrameBudgetTests, "edges have the resolution of the target, wh
             configuration.path = path;
             const Picture coarse =
                 coarse_picture(configuration, hosted ? std::optional(drawn_by_host) : std::nullopt, target);
-            const auto differs = [&](glm::ivec2 at) {
-                return differ(pixel(coarse, at), pixel(whole, at));
-            };
+            const auto differs = [&](glm::ivec2 at) { return differ(pixel(coarse, at), pixel(whole, at)); };
             // What remains are corners that no pixel of the smaller picture shows, and creases: close to
-            // those, two surfaces are not told apart. The depths of a host are off by half a pixel of the target, as
-            // they are those of its texels. Without the surfaces of the target, half of the pixels
+            // those, two surfaces are not told apart. The depths of a host are off by half a pixel of the
+            // target, as they are those of its texels. Without the surfaces of the target, half of the pixels
             // near edges would differ.
             CHECK(count_pixels(whole, differs) < at_edges / 6);
-            CHECK(count_pixels(whole, [&](glm::ivec2 at) {
-                      return differs(at) && !is_near_edge(whole, at);
-                  }) == 0);
+            CHECK(count_pixels(whole,
+                               [&](glm::ivec2 at) { return differs(at) && !is_near_edge(whole, at); }) == 0);
         }
     }
 }

@@ -30,7 +30,8 @@ std::vector<double> drag_light(App& app, int steps) {
         std::this_thread::sleep_for(std::chrono::milliseconds(20));
     }
     app.release_button();
-    app.wait_for("the last picture", [](const nlohmann::json& record) { return record["picture"] == record["submitted"]; });
+    app.wait_for("the last picture",
+                 [](const nlohmann::json& record) { return record["picture"] == record["submitted"]; });
     app.press_key(XK_z, {XK_Control_L});
     app.wait_for("the light back", [](const nlohmann::json& record) {
         return record["undo"] == 0 && record["picture"] == record["submitted"];

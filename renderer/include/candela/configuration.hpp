@@ -215,8 +215,8 @@ struct Configuration {
     RefinementSettings refinement;
     ToneMapSettings tone_map;
     /// Time budget of a frame in milliseconds while something moves. To keep to it, fewer pixels are rendered
-    /// (and scaled up along the edges of surfaces), and each pixel evaluates fewer VPLs. 0: no budget. Without a
-    /// value ("auto" in JSON): 16 on a GPU, 60 with a software driver.
+    /// (and scaled up along the edges of surfaces), and each pixel evaluates fewer VPLs. 0: no budget.
+    /// Without a value ("auto" in JSON): 16 on a GPU, 60 with a software driver.
     std::optional<float> frame_budget_ms = 0.0F;
     bool operator==(const Configuration&) const = default;
 };

@@ -113,8 +113,9 @@ struct RenderView {
 
 /// Options of one frame.
 struct FrameOptions {
-    /// Asked before each pass that runs; must not call the renderer. If it returns false, the frame is
-    /// abandoned: for example because the user has moved something meanwhile. Empty: always wanted.
+    /// Asked before each pass that runs, and between parts of those that shade pixels; must not call the
+    /// renderer. If it returns false, the frame is abandoned: for example because the user has moved
+    /// something meanwhile. Empty: always wanted.
     std::function<bool()> wanted{};
 };
 

@@ -23,8 +23,8 @@ constexpr std::uint32_t least_rows = 60;
 
 /// Gathers in as many dispatches as needed for each to evaluate at most `most` VPLs per pixel. Each adds to
 /// the sum of the ones before.
-void gather(const Gpu& gpu, const Execution& run, const gl::Program& program, glm::uvec2 size, std::uint32_t interleave,
-            std::uint32_t vpl_count, std::uint32_t most) {
+void gather(const Gpu& gpu, const Execution& run, const gl::Program& program, glm::uvec2 size,
+            std::uint32_t interleave, std::uint32_t vpl_count, std::uint32_t most) {
     const glm::uvec2 of_class = (size + interleave - 1U) / interleave;
     const std::uint32_t classes = interleave * interleave;
     const Groups blocks{groups(of_class.x, PIXEL_BLOCK), groups(of_class.y, PIXEL_BLOCK), classes};

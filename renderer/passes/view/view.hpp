@@ -40,7 +40,7 @@ void read_request(Pass& pass, ValueHandle<ViewRequest> request);
 struct ViewData {
     ValueHandle<CameraView> camera;
     BufferHandle<gpu::ViewConstants> constants;
-    glm::uvec2 size{1};                     ///< of the rendered picture, pixels
+    glm::uvec2 size{1};                    ///< of the rendered picture, pixels
     Workload workload = Workload::pixels;  ///< of passes that find its surfaces
 };
 

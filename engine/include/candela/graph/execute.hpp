@@ -224,9 +224,9 @@ class CANDELA_API GraphRuntime {
     /// having run, and the next `run` runs it again; passes that had completed keep their results.
     ///
     /// `wanted` is asked before each pass that runs, and by passes between parts of their work. If it returns
-    /// false, the run ends there, and the record is not `complete`. The next run goes on with the same frame: it runs the passes that are left, and
-    /// those whose inputs have changed meanwhile. Histories are those of the last complete frame, also after
-    /// an exception, but not if `switch_to` follows it.
+    /// false, the run ends there, and the record is not `complete`. The next run goes on with the same frame:
+    /// it runs the passes that are left, and those whose inputs have changed meanwhile. Histories are those
+    /// of the last complete frame, also after an exception, but not if `switch_to` follows it.
     ///
     /// Changes of the world, and another world in its place, are detected by the revisions of the component
     /// pools.
