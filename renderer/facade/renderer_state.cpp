@@ -203,7 +203,7 @@ std::vector<FrameShape> Renderer::State::shapes_to_prepare(const Configuration& 
     for (const RenderView& view : views) shape.views.push_back(shape_of(view));
     std::vector<FrameShape> shapes{shape};
     if (budget_ms(configuration) > 0.0) {
-        shape.quality = interleaved_quality;
+        shape.quality = lowest_quality;
         shapes.push_back(shape);
     }
     return shapes;

@@ -9,7 +9,7 @@ namespace {
 
 // From best to lowest. Interleaving comes first, because it costs hardly any quality.
 constexpr std::array<Quality, 9> qualities{{{1.0F, 1},
-                                            interleaved_quality,
+                                            {1.0F, 8},
                                             {0.8F, 8},
                                             {0.65F, 8},
                                             {0.5F, 8},

@@ -24,8 +24,7 @@ struct FrameCost {
 /// and g the ratio of the interleave factors (measured / wanted).
 [[nodiscard]] double expected_ms(const FrameCost& cost, const Quality& measured, const Quality& wanted);
 
-/// Of the qualities below the best, all with the same passes: one with full resolution.
-inline constexpr Quality interleaved_quality{1.0F, 8};
+/// Has the passes of all qualities but the best.
 inline constexpr Quality lowest_quality{0.2F, 8};
 
 /// The best quality whose expected time fits the budget, based on one measured frame; the lowest quality if

@@ -1,5 +1,7 @@
 #include "renderer/gpu/compute_steps.hpp"
 
+#include <algorithm>
+
 namespace candela {
 
 void ComputeSteps::run(const gl::Program& program, const Groups& groups, const gl::Uniforms& uniforms) {
@@ -9,9 +11,12 @@ void ComputeSteps::run(const gl::Program& program, const Groups& groups, const g
 
 void ComputeSteps::run_rows(const Execution& run, const gl::Program& program, const Groups& groups,
                             const gl::Uniforms& uniforms) {
-    const std::uint32_t rows = run.may_end() ? 1 : groups.y;
-    for (std::uint32_t first = 0; first < groups.y; first += rows) {
+    constexpr std::uint32_t most_parts = 8;
+    const std::uint32_t at_once = (groups.y + most_parts - 1) / most_parts;
+    const std::uint32_t step = run.may_end() ? at_once : groups.y;
+    for (std::uint32_t first = 0; first < groups.y; first += step) {
         run.end_if_unwanted();
+        const std::uint32_t rows = std::min(step, groups.y - first);
         this->run(program, {groups.x, rows, groups.z}, uniforms + gl::Uniforms{{"first_row", first}});
     }
 }

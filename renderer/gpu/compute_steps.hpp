@@ -20,9 +20,9 @@ class ComputeSteps {
     explicit ComputeSteps(const Gpu& gpu) : gpu_(gpu) {}
 
     void run(const gl::Program& program, const Groups& groups, const gl::Uniforms& uniforms = {});
-    /// The same in one dispatch, or if the frame may be given up, in one for each row of work groups (y). It
-    /// may end between them. The shader adds `first_row` to gl_WorkGroupID.y: shading/pixel_block.glsl. No
-    /// row depends on another.
+    /// The same in one dispatch, or if the frame may be given up, in several, of some rows of work groups (y)
+    /// each, between which the pass may end. The shader adds `first_row` to gl_WorkGroupID.y:
+    /// shading/pixel_block.glsl. No row depends on another.
     void run_rows(const Execution& run, const gl::Program& program, const Groups& groups,
                   const gl::Uniforms& uniforms);
     /// The numbers of groups are at `offset`, in bytes, in the buffer that the pass reads with

@@ -29,7 +29,7 @@ class Redraw {
 
     [[nodiscard]] bool has_changes() const { return frames_ > 0; }
     [[nodiscard]] bool has_moves() const { return pointer_moved_; }
-    /// Whether to draw now.
+    /// Whether to draw now. `rendering`: a picture is on its way.
     [[nodiscard]] bool is_due(Clock::time_point now, bool rendering = false) const {
         return frames_ > 0 ||
                (pointer_moved_ && now - last_ >= (rendering ? while_rendering : between_moves));

@@ -24,6 +24,7 @@ layout(binding = UNIT_INDIRECT_DIRECTION) uniform sampler2D gathered_flow;
 layout(rgba32f, binding = IMAGE_INDIRECT_DIRECTION) writeonly restrict uniform image2D reconstructed_flow;
 #endif
 
+const float SAME_NORMAL = 0.9;  // smallest cosine between normals of the same surface
 const float SAME_PLANE = 2.0;   // largest distance from the tangent plane, in widths of a pixel at that depth
 
 #ifdef MIRRORED

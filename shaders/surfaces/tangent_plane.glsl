@@ -1,9 +1,8 @@
-// Whether pixels lie on the same surface. See theory.md, "Same surface". For files that include view.glsl.
-
-const float SAME_NORMAL = 0.9;  // smallest cosine between normals of the same surface
+#include "view/view.glsl"
 
 // The plane with this normal through a point in normalised device coordinates, in clip space: the dot product with
-// (x, y, z, 1), in normalised device coordinates, is the distance from it in widths of a pixel at that depth.
+// (x, y, z, 1), in normalised device coordinates, is the distance from it in widths of a pixel at that depth. See
+// theory.md, "Same surface".
 vec4 tangent_plane(vec3 normal, vec3 point) {
     mat4 m = view.world_from_clip;
     vec4 w = vec4(m[0].w, m[1].w, m[2].w, m[3].w);
