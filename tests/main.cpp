@@ -1,8 +1,5 @@
-#include <doctest/doctest.h>
-
-#include "tests/seed.hpp"
+#include "tests/run_tests.hpp"
 
 int main(int argc, char** argv) {
-    if (!candela::take_test_seed()) return 2;
-    return doctest::Context(argc, argv).run();
+    return candela::run_tests(argc, argv);
 }

@@ -229,7 +229,7 @@ TEST_CASE("they are found, too, if its name is one that Windows does not allow" 
     }
 }
 
-TEST_CASE("a light that casts no shadow is one after it was saved and opened; by default it casts one") {
+TEST_CASE("a light that casts no shadow is one after it was saved and opened, and by default it casts one") {
     for (const bool casts_shadow : {false, true}) {
         CHECK(difference_after(with(PointLight{.casts_shadow = casts_shadow})) == "");
         CHECK(difference_after(with(SpotLight{.casts_shadow = casts_shadow})) == "");
@@ -237,7 +237,7 @@ TEST_CASE("a light that casts no shadow is one after it was saved and opened; by
     }
 }
 
-TEST_CASE("an empty name is a name; without one, the import makes one up") {
+TEST_CASE("an empty name is a name, and without one, the import makes one up") {
     const TemporaryDirectory folder;
     World world;
     world.set(add(world, ""), PointLight{});
@@ -253,7 +253,7 @@ TEST_CASE("an empty name is a name; without one, the import makes one up") {
     CHECK(opened.count<PointLight>() == 2);
 }
 
-TEST_CASE("a colour above 1 moves to the intensity; a range of zero becomes tiny") {
+TEST_CASE("a colour above 1 moves to the intensity, and a range of zero becomes tiny") {
     const TemporaryDirectory folder;
     static_cast<void>(export_gltf(
         with(PointLight{.colour = {3.0F, 1.0F, 0.0F}, .intensity = 0.7F, .range = 0.0F}), folder / "a.gltf"));

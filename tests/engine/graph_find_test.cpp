@@ -66,7 +66,7 @@ TEST_CASE_FIXTURE(Find, "the names of the passes so far") {
     CHECK(names.back() == "sky 2");
 }
 
-TEST_CASE_FIXTURE(Find, "names have the endings of views; of equal names, the last is found") {
+TEST_CASE_FIXTURE(Find, "names have the endings of views, and of equal names, the last is found") {
     const TextureHandle first = draw("draw", {}, texture("depth"));
     graph.append_to_names(" 2");
     const TextureHandle second = draw("draw", {}, texture("depth"));

@@ -1,11 +1,9 @@
-#include <doctest/doctest.h>
-
 #include <cstdio>
 #include <string_view>
 #include <vector>
 
 #include "tests/renderer/context_fixture.hpp"
-#include "tests/seed.hpp"
+#include "tests/run_tests.hpp"
 
 /// Like tests/main.cpp, with two more options: `--context=egl|osmesa` (default: egl), and `--verify` for
 /// renderers that run clean passes again and compare their results.
@@ -29,7 +27,5 @@ int main(int argc, char** argv) {
         }
         candela::set_tested_context(kind == "egl" ? candela::ContextKind::egl : candela::ContextKind::osmesa);
     }
-    if (!candela::take_test_seed()) return 2;
-    doctest::Context tests(static_cast<int>(others.size()), others.data());
-    return tests.run();
+    return candela::run_tests(static_cast<int>(others.size()), others.data());
 }

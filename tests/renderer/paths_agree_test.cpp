@@ -283,7 +283,7 @@ TEST_CASE_FIXTURE(PathsAgree, "paths agree: lights around the view, and across i
     check_all(lights_around_the_view());
 }
 
-TEST_CASE_FIXTURE(PathsAgree, "paths agree: cameras in walls, without perspective; tiny lights, spots") {
+TEST_CASE_FIXTURE(PathsAgree, "paths agree: cameras in walls, without perspective, tiny lights, spots") {
     check_all(cameras_and_lights());
 }
 

@@ -219,7 +219,7 @@ TEST_CASE_FIXTURE(PrepareTests, "it can be stopped, and goes on later") {
     CHECK(target.read() == picture);
 }
 
-TEST_CASE_FIXTURE(PrepareTests, "errors are returned as by configure; a frame that is none is one") {
+TEST_CASE_FIXTURE(PrepareTests, "errors are returned as by configure, and a frame that is none is one") {
     const Scene scene = cornell_box();
     Configuration bad;
     bad.vpls.bounces = 65;

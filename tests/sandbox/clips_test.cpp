@@ -62,7 +62,7 @@ TEST_CASE("a clip moves on by the seconds that pass, and starts again at its end
     CHECK(played.playback.faults().empty());
 }
 
-TEST_CASE("paused it stays, and another edit stays with it; resumed it goes on from there") {
+TEST_CASE("paused it stays, and another edit stays with it, and resumed it goes on from there") {
     Played played;
     played.playback.advance(played.world, 0.5);
     toggle_clips(played.world);
@@ -96,7 +96,7 @@ TEST_CASE("what has ended plays again from its start") {
     CHECK(played.x() == 0.5F);
 }
 
-TEST_CASE("a clip is chosen by its name or its index; others are named in the message") {
+TEST_CASE("a clip is chosen by its name or its index, and others are named in the message") {
     Played played;
     choose_clip(played.world, "1");
     CHECK(played.state().clip == 1);

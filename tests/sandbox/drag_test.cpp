@@ -175,7 +175,7 @@ TEST_CASE("aiming points a light at what is under the pointer, also below a skew
     CHECK(glm::distance(direction_of(scene.world, light), wanted) < tolerance_world);
 }
 
-TEST_CASE("scaling along an axis keeps the grabbed point under the pointer; uniform scaling doubles") {
+TEST_CASE("scaling along an axis keeps the grabbed point under the pointer, and uniform scaling doubles") {
     EditedScene scene;
     const Entity box = add_mesh(scene.world, cube(0.25F),
                                 {.translation = {0.0F, 0.5F, 0.0F},

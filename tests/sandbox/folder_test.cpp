@@ -42,7 +42,7 @@ using Names = std::vector<std::string>;
 
 }  // namespace
 
-TEST_CASE("folders come first, then files that can be opened; hidden ones are left out") {
+TEST_CASE("folders come first, then files that can be opened, without hidden ones") {
     const Home home;
     const Folder folder = read_folder(home.path);
     CHECK(folder.fault.empty());

@@ -99,7 +99,7 @@ TEST_CASE("tools that would change nothing are replaced") {
 
 TEST_SUITE("light labels") {
 TEST_CASE(
-    "only the hovered and the selected light are named; those behind walls are hidden, and come first") {
+    "only the hovered and the selected light are named, and those behind walls are hidden, and come first") {
     World world;
     add_mesh(world, square(1.0F));
     const Entity selected = add_point_light(world, {0.5F, 0.0F, 1.0F});

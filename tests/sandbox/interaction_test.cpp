@@ -70,7 +70,7 @@ struct User {
 
 }  // namespace
 
-TEST_CASE("a click selects a light before a surface, a surface, or nothing; the scene stays as it is") {
+TEST_CASE("a click selects a light before a surface, a surface, or nothing, and the scene stays as it is") {
     User user;
     const glm::mat4 view = user.viewport().clip_from_world;
     user.click(user.seen({0.0F, 0.4F, 0.5F}));
@@ -127,7 +127,7 @@ TEST_CASE("escape first cancels a drag, then deselects, then is the app's") {
     CHECK(user.key(GLFW_KEY_ESCAPE) == Command{Action::cancel});
 }
 
-TEST_CASE("X, Y and Z keep a drag on an axis; the same key again frees it") {
+TEST_CASE("X, Y and Z keep a drag on an axis, and the same key again frees it") {
     User user;
     const glm::vec3 start = position_of(user.world, user.light);
     user.press(user.seen(start));
@@ -271,7 +271,7 @@ TEST_CASE("the right button looks around, and the wheel then changes the speed a
     CHECK(position_of(user.world, user.interaction.viewer()) == eye);
 }
 
-TEST_CASE("F looks at the selection, or at the whole scene; Home goes back") {
+TEST_CASE("F looks at the selection, or at the whole scene, and Home goes back") {
     User user;
     const glm::mat4 view = user.viewport().clip_from_world;
     user.click(user.seen(user.light));

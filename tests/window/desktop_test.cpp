@@ -155,7 +155,7 @@ TEST_CASE("controls and text have the display's scale, and a window at rest uses
     CHECK(sharpest_step(twice.shot) > 0.75 * range_of(twice.shot));
 }
 
-TEST_CASE("the picture follows a dragged light; minimised it rests, restored it goes on refining") {
+TEST_CASE("the picture follows a dragged light, minimised it rests, restored it goes on refining") {
     // More frames than a test has time for.
     const TextFile refining("refining.json", R"({"refinement": {"enabled": true, "frames": 65536}})");
     App app({.flags = {"--config", refining.path()}, .width = 1280, .height = 720});
