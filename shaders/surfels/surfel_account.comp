@@ -1,6 +1,6 @@
 // Sums up over all cells where the flux of the lights went: absorbed, escaped, or left after the last bounce; and
-// decides whether another bounce is worth gathering: the sizes of the dispatches for it are in the account. See theory.md, "Flux account of surfels". One work group in all;
-// an invocation adds up every SURFEL_GROUP-th cell.
+// decides whether another bounce is worth gathering: the sizes of the dispatches for it are in the account. See
+// theory.md, "Flux account of surfels". One work group in all; an invocation adds up every SURFEL_GROUP-th cell.
 #include "surfels/surfel.glsl"
 
 layout(local_size_x = SURFEL_GROUP) in;
