@@ -344,14 +344,7 @@ TEST_CASE_FIXTURE(FrameBudgetTests, "edges have the resolution of the target, wh
                           .keep = {.depth = true, .normal = true, .albedo = true}};
     renderer.render(scene.world, {&view, 1});
     const Picture whole = target.read();
-    const FrameResults kept = renderer.results();
-    const HostSurfaces drawn_by_host{.depth = kept.depth.texture,
-                                     .normal = kept.normal.texture,
-                                     .albedo = kept.albedo.texture,
-                                     .clip_from_view = kept.view.clip_from_view,
-                                     .clip_depth_from_0 = true,
-                                     .empty_depth = 0.0F,
-                                     .normal_encoding = NormalEncoding::octahedral};
+    const HostSurfaces drawn_by_host = own_surfaces();
     const std::size_t at_edges = count_pixels(whole, [&](glm::ivec2 at) { return is_near_edge(whole, at); });
     REQUIRE(at_edges > 2000);
     for (const ShadingPath path : all_shading_paths) {

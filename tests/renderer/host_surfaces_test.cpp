@@ -84,18 +84,6 @@ class HostSurfaceTests : public RenderFixture {
         return target.read();
     }
 
-    /// The surfaces that were kept, in Candela's own conventions.
-    HostSurfaces own_surfaces() {
-        const FrameResults results = renderer.results();
-        return {.depth = results.depth.texture,
-                .normal = results.normal.texture,
-                .albedo = results.albedo.texture,
-                .clip_from_view = results.view.clip_from_view,
-                .clip_depth_from_0 = true,
-                .empty_depth = 0.0F,
-                .normal_encoding = NormalEncoding::octahedral};
-    }
-
     /// Roughness and metalness of the usual frame, as texels.
     std::vector<glm::vec4> own_material() {
         const Show shown = configuration.show;

@@ -352,6 +352,17 @@ Picture RenderFixture::from_scratch(const Scene& scene, glm::uvec2 size) {
     return target.read();
 }
 
+HostSurfaces RenderFixture::own_surfaces() const {
+    const FrameResults results = renderer.results();
+    return {.depth = results.depth.texture,
+            .normal = results.normal.texture,
+            .albedo = results.albedo.texture,
+            .clip_from_view = results.view.clip_from_view,
+            .clip_depth_from_0 = true,
+            .empty_depth = 0.0F,
+            .normal_encoding = NormalEncoding::octahedral};
+}
+
 bool RenderFixture::ran(std::string_view pass) const {
     const auto found = std::ranges::find(renderer.last_passes(), pass, &PassRecord::name);
     REQUIRE(found != renderer.last_passes().end());

@@ -132,6 +132,9 @@ class RenderFixture : public GlFixture {
     [[nodiscard]] Picture fresh_picture(const Scene& scene, glm::uvec2 size);
     /// The same by a renderer that is kept and invalidated, so that it need not compile its shaders again.
     [[nodiscard]] Picture from_scratch(const Scene& scene, glm::uvec2 size);
+    /// Depth, normal and albedo that the last frame has kept, as surfaces of a host in Candela's own
+    /// conventions.
+    [[nodiscard]] HostSurfaces own_surfaces() const;
     /// Whether the pass ran in the last frame; the graph must have it.
     [[nodiscard]] bool ran(std::string_view pass) const;
 
