@@ -102,6 +102,7 @@
 #define UNIT_SECOND_PICTURE UNIT_MEAN
 // Passes that enlarge pictures read no materials.
 #define UNIT_PICTURE_DEPTH UNIT_ALBEDO
+#define UNIT_PICTURE_WEIGHTS UNIT_DEPTH
 
 #define IMAGE_RADIANCE 0
 #define IMAGE_INDIRECT 0
