@@ -15,15 +15,17 @@
 namespace candela {
 namespace {
 
-LitScene add_scene(FrameGraph& graph, Gpu& gpu, const Configuration& configuration,
-                   const FrameContents& contents, FrameHandles& frame) {
+LitScene add_scene(FrameGraph& graph, Gpu& gpu, const Configuration& configuration, const FrameShape& shape,
+                   FrameHandles& frame) {
+    const FrameContents& contents = shape.contents;
     SceneData scene = add_scene_upload(graph, gpu, contents.second_uvs);
     scene.kinds = contents.surfaces;
     const Tracing tracing = add_bvh(graph, gpu, scene);
     frame.metrics = tracing.metrics;
     std::optional<Sky> sky;
     if (contents.sky) sky = add_sky(graph, gpu.scene_check(), sky_patches(configuration.vpls.count));
-    frame.lights = add_lights(graph, gpu, scene, tracing.metrics, sky, configuration.shadows);
+    frame.lights =
+        add_lights(graph, gpu, scene, tracing.metrics, sky, configuration.shadows, shape.quality.scale);
     return {.scene = scene, .tracing = tracing, .lights = frame.lights, .sky = sky};
 }
 
@@ -304,7 +306,7 @@ FrameHandles build_frame(FrameGraph& graph, Gpu& gpu, const Configuration& confi
     }
     end_view(graph);
 
-    const LitScene lit = add_scene(graph, gpu, configuration, shape.contents, frame);
+    const LitScene lit = add_scene(graph, gpu, configuration, shape, frame);
     const std::optional<ValueHandle<Refinement>> refinement = add_cameras(graph, configuration, lit, frame);
     const std::optional<SharedVpls> vpls =
         add_vpls(graph, gpu, configuration, shape, lit, refinement, !extensions.empty(), frame);

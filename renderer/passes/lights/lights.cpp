@@ -6,9 +6,9 @@
 namespace candela {
 
 SceneLights add_lights(FrameGraph& graph, Gpu& gpu, const SceneData& scene, ValueHandle<SceneMetrics> metrics,
-                       const std::optional<Sky>& sky, const ShadowSettings& settings) {
+                       const std::optional<Sky>& sky, const ShadowSettings& settings, float scale) {
     const ValueHandle<LightTable> table = add_light_table(graph, gpu.scene_check(), metrics, sky);
-    const ShadowMaps shadows = add_shadow_maps(graph, gpu, scene, table, metrics, settings);
+    const ShadowMaps shadows = add_shadow_maps(graph, gpu, scene, table, metrics, settings, scale);
     return graph.add("light-upload", [&](Pass& pass) {
         pass.read(table);
         const SceneLights out{

@@ -22,9 +22,9 @@ struct SceneLights {
 };
 
 /// Adds node `lights` (CPU): see add_light_table; the nodes of add_shadow_maps; and `light-upload` (CPU, then
-/// upload): the table and the shadows as buffers.
+/// upload): the table and the shadows as buffers. `scale`: see shadow_resolution.
 [[nodiscard]] SceneLights add_lights(FrameGraph& graph, Gpu& gpu, const SceneData& scene,
                                      ValueHandle<SceneMetrics> metrics, const std::optional<Sky>& sky,
-                                     const ShadowSettings& settings);
+                                     const ShadowSettings& settings, float scale);
 
 }  // namespace candela

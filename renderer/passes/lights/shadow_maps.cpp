@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <array>
+#include <cmath>
 #include <glm/geometric.hpp>
 #include <glm/gtc/matrix_transform.hpp>
 #include <map>
@@ -89,8 +90,8 @@ gpu::Shadow shadow_of(const ShadowPlan::View& view, float ray_offset) {
 
 /// The faces are wider than the cube's by half a texel on each side, so that the four texels around any
 /// direction are all in one face.
-gpu::Shadow add_cube(ShadowPlan& plan, const gpu::Light& light, const ShadowShape& shape, float ray_offset,
-                     std::uint32_t resolution) {
+gpu::Shadow add_cube(ShadowPlan& plan, const gpu::Light& light, const ShadowShape& shape, float ray_offset) {
+    const double resolution = plan.resolution.cube;
     const MapProjection projection = perspective(resolution / (resolution - 1.0), shape.near, shape.far);
     gpu::Shadow cube = no_shadow;
     cube.layer = static_cast<std::uint32_t>(plan.shadows.size());
@@ -108,9 +109,9 @@ gpu::Shadow add_cube(ShadowPlan& plan, const gpu::Light& light, const ShadowShap
     return cube;
 }
 
-gpu::Shadow add_map(ShadowPlan& plan, const gpu::Light& light, const ShadowShape& shape, float ray_offset,
-                    std::uint32_t resolution) {
-    const double margin = 1.0 + 4.0 / resolution;  // two texels on each side, for the four around a receiver
+gpu::Shadow add_map(ShadowPlan& plan, const gpu::Light& light, const ShadowShape& shape, float ray_offset) {
+    const double margin =
+        1.0 + 4.0 / plan.resolution.map;  // two texels on each side, for the four around a receiver
     const MapProjection projection =
         shape.kind == SHADOW_PERSPECTIVE
             ? perspective(margin * shape.tangent, shape.near, shape.far)
@@ -148,11 +149,10 @@ bool reserve(Execution& run, TextureHandle texture, std::uint32_t resolution, st
 }
 
 /// The numbers of the plan's views whose shadow maps are missing or outdated.
-std::vector<std::size_t> due_views(Execution& run, bool surfaces_changed, const ShadowMaps& out,
-                                   const ShadowSettings& settings) {
+std::vector<std::size_t> due_views(Execution& run, bool surfaces_changed, const ShadowMaps& out) {
     const ShadowPlan& plan = run.value(out.plan);
-    const bool keeps_cubes = reserve(run, out.cubes, settings.cube_resolution, plan.cubes * cube_faces);
-    const bool keeps_maps = reserve(run, out.maps, settings.map_resolution, plan.maps);
+    const bool keeps_cubes = reserve(run, out.cubes, plan.resolution.cube, plan.cubes * cube_faces);
+    const bool keeps_maps = reserve(run, out.maps, plan.resolution.map, plan.maps);
     const DrawnShadows* const last = run.previous(out.drawn);
     std::map<std::pair<bool, std::uint32_t>, const ShadowPlan::View*> shown;
     if (last != nullptr && !surfaces_changed) {
@@ -169,15 +169,14 @@ std::vector<std::size_t> due_views(Execution& run, bool surfaces_changed, const 
     return due;
 }
 
-std::uint32_t resolution_of(const ShadowPlan::View& view, const ShadowSettings& settings) {
-    return view.cube ? settings.cube_resolution : settings.map_resolution;
+std::uint32_t resolution_of(const ShadowPlan::View& view, const ShadowResolution& resolution) {
+    return view.cube ? resolution.cube : resolution.map;
 }
 
 /// What the node is made of.
 struct ShadowNode {
     SceneData scene;
     ShadowMaps out;
-    ShadowSettings settings;
     const gl::Program* program;  // null if nothing casts shadows
     ValueHandle<SceneMetrics> metrics;
 };
@@ -195,15 +194,15 @@ struct DrawRange {
 /// Uploads the draws of all views, also of those whose maps are kept, so that the buffer depends on no
 /// earlier frame. Makes them those that are drawn next, and returns their ranges, by view.
 std::vector<DrawRange> upload_draws(const Gpu& gpu, Execution& run, const ShadowNode& node) {
-    const std::vector<ShadowPlan::View>& views = run.value(node.out.plan).views;
+    const ShadowPlan& plan = run.value(node.out.plan);
     const std::vector<ShadowCaster> casters = shadow_casters(
         run.value(node.scene.layout), run.value(node.scene.placement), run.value(node.metrics).ray_offset());
     std::vector<gpu::DrawCommand> draws;
     std::vector<DrawRange> ranges;
-    ranges.reserve(views.size());
-    for (const ShadowPlan::View& view : views) {
+    ranges.reserve(plan.views.size());
+    for (const ShadowPlan::View& view : plan.views) {
         const std::size_t first = draws.size();
-        append_shadow_draws(casters, view.clip_from_world, resolution_of(view, node.settings), draws);
+        append_shadow_draws(casters, view.clip_from_world, resolution_of(view, plan.resolution), draws);
         ranges.push_back({first, draws.size() - first});
     }
     upload<gpu::DrawCommand>(gpu, run, node.out.draws, draws);
@@ -213,8 +212,8 @@ std::vector<DrawRange> upload_draws(const Gpu& gpu, Execution& run, const Shadow
 
 void draw_views(Gpu& gpu, Execution& run, const ShadowNode& node, const std::vector<std::size_t>& due) {
     const auto& out = node.out;
-    const std::vector<ShadowPlan::View>& views = run.value(out.plan).views;
-    run.set(out.drawn, {views, static_cast<std::uint32_t>(due.size())});
+    const ShadowPlan& plan = run.value(out.plan);
+    run.set(out.drawn, {plan.views, static_cast<std::uint32_t>(due.size())});
 
     // Rays end nearer to the light.
     const float least_distance = 0.5F * run.value(node.metrics).ray_offset();
@@ -222,8 +221,8 @@ void draw_views(Gpu& gpu, Execution& run, const ShadowNode& node, const std::vec
     const std::vector<DrawRange> draws = upload_draws(gpu, run, node);
     LayerTarget target(gpu);
     for (const std::size_t i : due) {
-        const ShadowPlan::View& view = views[i];
-        const std::uint32_t resolution = resolution_of(view, node.settings);
+        const ShadowPlan::View& view = plan.views[i];
+        const std::uint32_t resolution = resolution_of(view, plan.resolution);
         target.set_layer(run.object(view.cube ? out.cubes : out.maps), view.layer, resolution);
         target.clear();
         if (draws[i].count == 0) continue;
@@ -242,16 +241,18 @@ struct PlannedShadows {
 };
 
 PlannedShadows add_shadow_plan(FrameGraph& graph, const Gpu& gpu, ValueHandle<LightTable> lights,
-                               ValueHandle<SceneMetrics> metrics, const ShadowSettings& settings) {
+                               ValueHandle<SceneMetrics> metrics, const ShadowSettings& settings,
+                               float scale) {
     return graph.add("shadow-plan", [&](Pass& pass) {
         pass.read(lights);
         pass.read(metrics);
         pass.parameter(settings);
+        pass.parameter(scale);
         const PlannedShadows out{
             .plan = pass.write(graph.value<ShadowPlan>("shadow plan")),
             .shadows = pass.write(growing_buffer<gpu::Shadow>(graph, "shadow buffer"), Usage::copy)};
         pass.run([=, &gpu](Execution& run) {
-            ShadowPlan plan = plan_shadows(run.value(lights), run.value(metrics), settings);
+            ShadowPlan plan = plan_shadows(run.value(lights), run.value(metrics), settings, scale);
             upload<gpu::Shadow>(gpu, run, out.shadows, plan.shadows);
             run.set(out.plan, std::move(plan));
         });
@@ -274,9 +275,19 @@ std::optional<DepthTerms> depth_terms(const ShadowPlan& plan, bool cubes, std::u
 
 }  // namespace
 
-ShadowPlan plan_shadows(const LightTable& lights, const SceneMetrics& metrics,
-                        const ShadowSettings& settings) {
+ShadowResolution shadow_resolution(const ShadowSettings& settings, float scale) {
+    constexpr std::uint32_t least = 16;
+    const auto halvings = static_cast<std::uint32_t>(std::max(std::floor(-std::log2(scale)), 0.0F));
+    const auto reduced = [&](std::uint32_t resolution) {
+        return std::max(resolution >> halvings, std::min(resolution, least));
+    };
+    return {reduced(settings.cube_resolution), reduced(settings.map_resolution)};
+}
+
+ShadowPlan plan_shadows(const LightTable& lights, const SceneMetrics& metrics, const ShadowSettings& settings,
+                        float scale) {
     ShadowPlan plan;
+    plan.resolution = shadow_resolution(settings, scale);
     plan.shadows.assign(lights.entries.size(), no_shadow);
     const auto bytes = [](std::uint64_t resolution, std::uint64_t layers) {
         return resolution * resolution * layers * bytes_per_depth;
@@ -295,9 +306,8 @@ ShadowPlan plan_shadows(const LightTable& lights, const SceneMetrics& metrics,
             continue;
         }
         budget -= cost;
-        const gpu::Shadow shadow =
-            cube ? add_cube(plan, entry.light, shape, metrics.ray_offset(), settings.cube_resolution)
-                 : add_map(plan, entry.light, shape, metrics.ray_offset(), settings.map_resolution);
+        const gpu::Shadow shadow = cube ? add_cube(plan, entry.light, shape, metrics.ray_offset())
+                                        : add_map(plan, entry.light, shape, metrics.ray_offset());
         plan.shadows[i] = shadow;  // a cube has added its faces to the list
     }
     return plan;
@@ -305,13 +315,12 @@ ShadowPlan plan_shadows(const LightTable& lights, const SceneMetrics& metrics,
 
 ShadowMaps add_shadow_maps(FrameGraph& graph, Gpu& gpu, const SceneData& scene,
                            ValueHandle<LightTable> lights, ValueHandle<SceneMetrics> metrics,
-                           const ShadowSettings& settings) {
-    const PlannedShadows planned = add_shadow_plan(graph, gpu, lights, metrics, settings);
+                           const ShadowSettings& settings, float scale) {
+    const PlannedShadows planned = add_shadow_plan(graph, gpu, lights, metrics, settings, scale);
     return graph.add("shadow-maps", [&](Pass& pass) {
         const std::vector<ResourceHandle> surfaces = read_meshes(pass, scene);
         pass.read(scene.placement);
         pass.read(planned.plan);
-        pass.parameter(settings);
         pass.read(metrics);
         const gl::Program* const program = scene.kinds.any() ? &shadow_program(gpu) : nullptr;
         const ShadowMaps out{
@@ -330,8 +339,8 @@ ShadowMaps add_shadow_maps(FrameGraph& graph, Gpu& gpu, const SceneData& scene,
                        }));
         }
         pass.run([=, &gpu](Execution& run) {
-            const auto due = due_views(run, run.changed(surfaces), out, settings);
-            draw_views(gpu, run, {scene, out, settings, program, metrics}, due);
+            const auto due = due_views(run, run.changed(surfaces), out);
+            draw_views(gpu, run, {scene, out, program, metrics}, due);
         });
         return out;
     });

@@ -12,6 +12,17 @@
 
 namespace candela {
 
+/// Texels along an edge of shadow maps.
+struct ShadowResolution {
+    std::uint32_t cube = 0;  ///< of a face
+    std::uint32_t map = 0;
+    bool operator==(const ShadowResolution&) const = default;
+};
+
+/// Halved as often as the sides of the picture are, `scale` being their share of the target's. Shadows are
+/// the same with any resolution; only how many pixels need a ray depends on it.
+[[nodiscard]] ShadowResolution shadow_resolution(const ShadowSettings& settings, float scale);
+
 /// Which lights get a shadow map, and the views to render for them.
 struct ShadowPlan {
     /// One rendering of scene depth: a flat map, or a face of a cube map.
@@ -23,6 +34,7 @@ struct ShadowPlan {
         std::uint32_t layer = 0;  ///< of the array of cubes or of maps
         bool operator==(const View&) const = default;
     };
+    ShadowResolution resolution;
     std::vector<gpu::Shadow> shadows;  ///< by light of the table, then the faces of cubes
     std::vector<View> views;
     std::uint32_t cubes = 0;  ///< cubes and flat maps: how many lights have one
@@ -49,8 +61,9 @@ struct ShadowMaps {
 };
 
 /// Assigns shadow maps to the lights that cast shadows, by decreasing flux, as long as the budget lasts.
+/// Which lights have one does not depend on `scale`; see shadow_resolution.
 [[nodiscard]] ShadowPlan plan_shadows(const LightTable& lights, const SceneMetrics& metrics,
-                                      const ShadowSettings& settings);
+                                      const ShadowSettings& settings, float scale);
 
 /// Adds nodes `shadow-plan` (CPU: plan_shadows, then upload of the shadows) and `shadow-maps` (raster): depth
 /// of the scene as seen from every light that has a map (shadow mapping: Williams, "Casting Curved Shadows on
@@ -59,10 +72,11 @@ struct ShadowMaps {
 /// The maps are conservative, and where one does not decide, shading traces a ray: shaders/theory.md, "Shadow
 /// maps". Both sides of all triangles are drawn that may be in a map, but no blended surfaces. Views whose
 /// content is unchanged are kept: if a light moves, only its views are drawn; if a mesh moves, all are; if
-/// the camera moves, none. Depends on meshes, materials, lights and the scene's metrics.
+/// the camera moves, none. Depends on meshes, materials, lights and the scene's metrics. `scale`: see
+/// shadow_resolution.
 [[nodiscard]] ShadowMaps add_shadow_maps(FrameGraph& graph, Gpu& gpu, const SceneData& scene,
                                          ValueHandle<LightTable> lights, ValueHandle<SceneMetrics> metrics,
-                                         const ShadowSettings& settings);
+                                         const ShadowSettings& settings, float scale);
 
 /// For a pass whose shader includes shadow.glsl.
 void read_shadow_maps(Pass& pass, const ShadowMaps& shadows);
