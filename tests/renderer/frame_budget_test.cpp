@@ -1,6 +1,7 @@
 // How the quality of frames is chosen under a time budget, and the pictures that result.
 
 #include "renderer/frame/frame_budget.hpp"
+#include "renderer/passes/lights/shadow_maps.hpp"
 
 #include <doctest/doctest.h>
 
@@ -257,6 +258,13 @@ TEST_CASE_FIXTURE(FrameBudgetTests, "the passes whose work grows with the pixels
                  fine) {  // Clang 14 captures no structured bindings, as CHECK_MESSAGE would
                 const std::string& pass = each.first;
                 const auto& done = each.second;
+                // Smaller for a smaller picture, but its draws take time, too, and it runs only if lights
+                // move.
+                if (pass == "shadow-maps") {
+                    CHECK(done.workload == Workload::other);
+                    CHECK(done.written != coarse.at(pass).written);
+                    continue;
+                }
                 if (pass == "tone-map") {  // to the target, or to a picture with fewer pixels
                     CHECK(done.workload == Workload::other);
                     CHECK(coarse.at(pass).workload == Workload::pixels);
@@ -329,6 +337,49 @@ TEST_CASE_FIXTURE(FrameBudgetTests,
     move_camera();
     static_cast<void>(render(scene, size));
     CHECK(renderer.report().rendered_size == lowest_size(size));
+}
+
+TEST_CASE("shadow maps are halved as often as the picture, and never get tiny") {
+    const ShadowSettings settings{.cube_resolution = 512, .map_resolution = 1024};
+    const auto is = [&](float scale, std::uint32_t cube, std::uint32_t map) {
+        return shadow_resolution(settings, scale) == ShadowResolution{cube, map};
+    };
+    CHECK(is(1.0F, 512, 1024));
+    CHECK(is(0.75F, 512, 1024));
+    CHECK(is(0.5F, 256, 512));
+    CHECK(is(0.2F, 128, 256));
+    CHECK(is(1e-6F, 16, 16));
+    const ShadowSettings least{.cube_resolution = 16, .map_resolution = 20};
+    CHECK(shadow_resolution(least, 0.2F) == ShadowResolution{16, 16});
+}
+
+TEST_CASE_FIXTURE(FrameBudgetTests, "shadows are the same with small maps as with large ones") {
+    const Transform pose = scene.world.get<Transform>(scene.light);
+    const RenderTarget target(device, {320, 240});
+    Configuration configuration = linear_configuration();
+    configuration.indirect = false;
+    std::vector<Picture> pictures;
+    for (const std::uint32_t resolution : {64U, 2048U}) {
+        scene.world.set(scene.light, pose);
+        configuration.shadows.cube_resolution = resolution;
+        pictures.push_back(coarse_picture(configuration, std::nullopt, target));
+    }
+    CHECK(pictures[0] == pictures[1]);
+}
+
+TEST_CASE_FIXTURE(FrameBudgetTests, "the same lights have a shadow map, whatever the quality") {
+    add(scene.world, at({0.5F, 1.0F, 0.0F}), PointLight{.intensity = 1.0F});
+    Configuration configuration = linear_configuration();
+    configuration.shadows.cube_resolution = 512;
+    configuration.shadows.budget_mib = 6;  // 512 × 512 × 4 bytes × 6 faces: of one
+    configure(configuration);
+    static_cast<void>(render(scene, size));
+    CHECK(renderer.report().lights.without_shadow == 1);
+    configuration.frame_budget_ms = 1e-3F;
+    configure(configuration);
+    static_cast<void>(moving());
+    CHECK(renderer.report().rendered_size == lowest_size(size));
+    CHECK(renderer.report().lights.without_shadow == 1);
 }
 
 TEST_CASE_FIXTURE(FrameBudgetTests, "edges have the resolution of the target, whatever the quality") {
