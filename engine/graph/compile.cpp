@@ -16,19 +16,19 @@ namespace candela {
 namespace detail {
 namespace {
 
-/// Checks that the names of passes are unique. A hash table with open addressing: a set would allocate memory
-/// for every pass, which can be seen in the time that compiling takes.
-void check_passes(Declaration& declared) {
+/// Checks that the names, or the keys, of passes are unique. A hash table with open addressing: a set would
+/// allocate memory for every pass, which can be seen in the time that compiling takes. `fault`: what is said
+/// of two passes that have the same one.
+void check_passes(Declaration& declared, std::string_view PassNode::*text, std::string_view fault) {
     std::vector<std::string_view> table(std::bit_ceil(2 * declared.passes.size() + 1));
     for (const PassNode& pass : declared.passes) {
-        std::size_t at = std::hash<std::string_view>{}(pass.name) & (table.size() - 1);
-        while (table[at].data() && table[at] != pass.name) {
+        const std::string_view here = pass.*text;
+        std::size_t at = std::hash<std::string_view>{}(here) & (table.size() - 1);
+        while (table[at].data() && table[at] != here) {
             at = (at + 1) & (table.size() - 1);
         }
-        if (table[at].data()) {
-            declared.error(ErrorCode::duplicate_pass, "two passes are called '{}'", pass.name);
-        }
-        table[at] = pass.name;
+        if (table[at].data()) declared.error(ErrorCode::duplicate_pass, "two passes {} '{}'", fault, here);
+        table[at] = here;
     }
 }
 
@@ -40,10 +40,12 @@ void check_texture(Declaration& declared, const Resource& resource) {
     }
 }
 
-/// Checks that textures are possible, that the names of persistent and imported resources are unique within a
-/// kind, and that every resource with a history is written.
+/// Checks that textures are possible, that the names and the keys of persistent and imported resources are
+/// unique within a kind, and that every resource with a history is written.
 void check_resources(Declaration& declared) {
-    std::array<std::unordered_set<std::string_view>, 3> names;  // by kind
+    using Texts = std::array<std::unordered_set<std::string_view>, 3>;  // by kind
+    Texts names;
+    Texts keys;
     for (const Resource& resource : declared.resources) {
         if (resource.storage->kind == ResourceKind::texture) check_texture(declared, resource);
         if (resource.history != none && resource.versions == 0) {
@@ -51,9 +53,16 @@ void check_resources(Declaration& declared) {
                            resource.title());
         }
         const ResourceKind kind = resource.storage->kind;
-        if (resource.is_kept() && !names.at(static_cast<std::size_t>(kind)).insert(resource.name).second) {
+        if (!resource.is_kept()) continue;
+        const bool new_name = names.at(static_cast<std::size_t>(kind)).insert(resource.name).second;
+        const bool new_key = keys.at(static_cast<std::size_t>(kind)).insert(resource.key).second;
+        if (!new_name) {
             declared.error(ErrorCode::duplicate_resource, "two {}s that are kept or imported are called '{}'",
                            to_string(kind), resource.name);
+        } else if (!new_key) {
+            declared.error(ErrorCode::duplicate_resource,
+                           "two {}s that are kept or imported have the key '{}'", to_string(kind),
+                           resource.key);
         }
     }
 }
@@ -150,7 +159,10 @@ CompileResult compile(FrameGraph&& graph) {
     std::unique_ptr<detail::Declaration> declared = std::move(graph.declared_);
     auto plan = std::make_unique<detail::Plan>();
 
-    detail::check_passes(*declared);
+    detail::check_passes(*declared, &detail::PassNode::name, "are called");
+    if (declared->errors.empty()) {
+        detail::check_passes(*declared, &detail::PassNode::key, "have the key");
+    }
     detail::check_resources(*declared);
     if (!declared->errors.empty()) return {std::nullopt, std::move(declared->errors)};
     detail::number_versions(*declared, *plan);

@@ -27,12 +27,13 @@ std::uint32_t make_identity(const void* address) {
 }
 
 /// `name` is stored in the arena.
-ResourceHandle add_resource(Declaration& declared, std::string_view name, const detail::Storage& storage,
+ResourceHandle add_resource(Declaration& declared, const detail::Name& name, const detail::Storage& storage,
                             Lifetime lifetime) {
     const detail::Storage* const last =
         declared.resources.empty() ? nullptr : declared.resources.back().storage;
     Resource& added = declared.resources.emplace_back();
-    added.name = name;
+    added.name = name.name;
+    added.key = name.key;
     added.storage = last && *last == storage ? last : declared.arena.store(storage);
     added.lifetime = lifetime;
     return {declared.id, detail::size_of(declared.resources) - 1, 0};
@@ -79,8 +80,10 @@ ResourceHandle add_part(Declaration& declared, TextureHandle of, TexturePart par
         declared.error(ErrorCode::wrong_usage, "{} has no {}: {}", whole.title(), to_string(part), why);
         return of;
     }
-    const std::string_view name =
-        declared.arena.store_text(fmt::format("{} {}", whole.name, to_string(part)));
+    const auto of_part = [&](std::string_view name) {
+        return declared.arena.store_text(fmt::format("{} {}", name, to_string(part)));
+    };
+    const detail::Name name{of_part(whole.name), of_part(whole.key)};
     const ResourceHandle handle = add_resource(
         declared, name, {.kind = ResourceKind::texture, .texture = part_desc(whole.storage->texture, part)},
         Lifetime::persistent);
@@ -150,9 +153,12 @@ std::string_view detail::Declaration::fault_of(ResourceHandle handle) const {
     return handle.graph == id ? "by a handle that is not of one" : "of another graph";
 }
 
-std::string_view detail::Declaration::store_name(std::string_view name) {
-    if (ending.empty()) return arena.store_text(name);
-    return arena.store_text(fmt::format("{}{}", name, ending));
+detail::Name detail::Declaration::store_name(std::string_view name) {
+    const auto with = [&](std::string_view end) {
+        return end.empty() ? arena.store_text(name) : arena.store_text(fmt::format("{}{}", name, end));
+    };
+    const std::string_view stored = with(ending);
+    return {stored, key_ending ? with(*key_ending) : stored};
 }
 
 FrameGraph::FrameGraph() : declared_(std::make_unique<Declaration>()) {}
@@ -162,6 +168,10 @@ FrameGraph::~FrameGraph() = default;
 
 void FrameGraph::append_to_names(std::string_view ending) {
     declared_->ending = ending;
+}
+
+void FrameGraph::append_to_keys(std::optional<std::string_view> ending) {
+    declared_->key_ending = ending;
 }
 
 TextureHandle FrameGraph::texture(std::string_view name, const TextureDesc& desc, Lifetime lifetime) {
@@ -201,7 +211,8 @@ TextureHandle FrameGraph::history(TextureHandle texture) {
     }
     if (base.history != none) return {{declared_->id, base.history, 0}};
 
-    const ResourceHandle history = add_resource(*declared_, base.name, *base.storage, Lifetime::persistent);
+    const ResourceHandle history =
+        add_resource(*declared_, {base.name, base.key}, *base.storage, Lifetime::persistent);
     declared_->resources[history.resource].history_of = texture.resource;
     declared_->resources[texture.resource].history = history.resource;
     declared_->resources[texture.resource].lifetime = Lifetime::persistent;

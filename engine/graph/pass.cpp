@@ -139,7 +139,9 @@ Pass::Pass(Declaration& declared, std::string_view name) : declared_(declared), 
     }
     declared.declaring = true;
     detail::PassNode& pass = declared.passes.emplace_back();
-    pass.name = declared.store_name(name);
+    const detail::Name stored = declared.store_name(name);
+    pass.name = stored.name;
+    pass.key = stored.key;
     pass.first_access = detail::size_of(declared.accesses);
     pass.first_component = detail::size_of(declared.components);
     pass.first_parameter = detail::size_of(declared.parameters);

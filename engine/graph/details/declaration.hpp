@@ -4,6 +4,7 @@
 #include <cstddef>
 #include <cstdint>
 #include <limits>
+#include <optional>
 #include <span>
 #include <string>
 #include <string_view>
@@ -38,8 +39,15 @@ struct Storage {
     [[nodiscard]] std::size_t hash() const;
 };
 
+/// What something is called in a graph, and by what it is found again in another: FrameGraph::append_to_keys.
+struct Name {
+    std::string_view name;
+    std::string_view key;
+};
+
 struct Resource {
     std::string_view name;
+    std::string_view key;
     const Storage* storage = nullptr;  // as declared; in the arena
     Lifetime lifetime = Lifetime::transient;
     bool updated = false;             // see Pass::update
@@ -56,7 +64,7 @@ struct Resource {
     // Of a buffer; not a part of its storage, which buffers of several types may share.
     std::type_index element = typeid(void);
 
-    /// Whether it is found again by its name in another graph. A history goes with its resource.
+    /// Whether it is found again by its key in another graph. A history goes with its resource.
     [[nodiscard]] bool is_kept() const { return lifetime != Lifetime::transient && history_of == none; }
     /// For messages, for example "texture 'depth'".
     [[nodiscard]] std::string title() const { return fmt::format("{} '{}'", to_string(storage->kind), name); }
@@ -87,6 +95,7 @@ struct Parameter {
 
 struct PassNode {
     std::string_view name;
+    std::string_view key;
     void* function = nullptr;
     void (*invoke)(void*, Execution&) = nullptr;
     std::uint32_t first_access = 0;  // each list ends where the next pass's begins
@@ -115,8 +124,8 @@ struct Declaration {
     [[nodiscard]] bool owns(ResourceHandle handle, ResourceKind kind) const;
     /// What is wrong with a handle that is not one of these, to follow "a texture".
     [[nodiscard]] std::string_view fault_of(ResourceHandle handle) const;
-    /// Copies the name, with the ending of FrameGraph::append_to_names.
-    [[nodiscard]] std::string_view store_name(std::string_view name);
+    /// Copies the name, with the endings of FrameGraph::append_to_names and append_to_keys.
+    [[nodiscard]] Name store_name(std::string_view name);
     template <class... Args>
     void error(ErrorCode code, fmt::format_string<Args...> format, Args&&... args) {
         // GCC 12 reports overlapping copies if a CompileError is made first and then moved.
@@ -127,8 +136,9 @@ struct Declaration {
 
     std::uint32_t id = 0;
     Arena arena;
-    std::string ending;      // of the names of what is declared
-    bool declaring = false;  // a pass
+    std::string ending;                     // of the names of what is declared
+    std::optional<std::string> key_ending;  // of their keys; none: they are the names
+    bool declaring = false;                 // a pass
     std::vector<PassNode> passes;
     std::vector<Access> accesses;
     std::vector<ComponentRead> components;

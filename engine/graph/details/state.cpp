@@ -12,6 +12,7 @@ Step make_step(const Declaration& declared, const Plan& plan, std::uint32_t posi
     Step step{.invoke = node.invoke,
               .function = node.function,
               .name = node.name,
+              .key = node.key,
               .barrier = plan.barrier[position],
               .side_effect = node.side_effect,
               .keeps_state = node.keeps_state};
@@ -49,7 +50,7 @@ Slot make_slot(const Declaration& declared, const Resource& resource) {
     slot.owned = slot.storage.kind != ResourceKind::value && resource.lifetime != Lifetime::imported;
     slot.view = resource.part_of != none;
     slot.declared = slot.view ? *declared.resources[resource.part_of].storage : slot.storage;
-    if (slot.owned && resource.lifetime == Lifetime::persistent) slot.name = resource.name;
+    if (slot.owned && resource.lifetime == Lifetime::persistent) slot.key = resource.key;
     return slot;
 }
 
@@ -84,7 +85,7 @@ class StateTransfer {
 
  private:
     [[nodiscard]] bool alike(const Resource& resource, const Resource& old) const {
-        if (resource.name != old.name || *resource.storage != *old.storage ||
+        if (resource.key != old.key || *resource.storage != *old.storage ||
             resource.lifetime != old.lifetime || (resource.history == none) != (old.history == none) ||
             (resource.history_of == none) != (old.history_of == none) ||
             (resource.part_of == none) != (old.part_of == none)) {
@@ -95,21 +96,21 @@ class StateTransfer {
                 alike(declared_.resources[resource.part_of], old_declared_.resources[old.part_of]));
     }
 
-    /// Matches persistent and imported resources by kind and name. The host must bind imported GPU objects
+    /// Matches persistent and imported resources by kind and key. The host must bind imported GPU objects
     /// again.
     void take_slots() {
-        std::map<std::pair<ResourceKind, std::string_view>, std::uint32_t> by_name;
+        std::map<std::pair<ResourceKind, std::string_view>, std::uint32_t> by_key;
         for (std::uint32_t index = 0; index < old_declared_.resources.size(); ++index) {
             const Resource& old = old_declared_.resources[index];
             if (old.is_kept() && old_plan_.object[index] != none) {
-                by_name.insert({{old.storage->kind, old.name}, index});
+                by_key.insert({{old.storage->kind, old.key}, index});
             }
         }
         for (std::uint32_t index = 0; index < declared_.resources.size(); ++index) {
             const Resource& resource = declared_.resources[index];
             if (!resource.is_kept() || plan_.object[index] == none) continue;
-            const auto found = by_name.find({resource.storage->kind, resource.name});
-            if (found != by_name.end() && alike(resource, old_declared_.resources[found->second])) {
+            const auto found = by_key.find({resource.storage->kind, resource.key});
+            if (found != by_key.end() && alike(resource, old_declared_.resources[found->second])) {
                 take_resource(index, found->second);
             }
         }
@@ -140,13 +141,13 @@ class StateTransfer {
     }
 
     void take_records() {
-        std::map<std::string_view, std::uint32_t> by_name;
+        std::map<std::string_view, std::uint32_t> by_key;
         for (std::uint32_t index = 0; index < old_.step_count(); ++index) {
-            by_name.insert({old_.steps[index].name, index});
+            by_key.insert({old_.steps[index].key, index});
         }
         for (std::uint32_t index = 0; index < state_.step_count(); ++index) {
-            const auto found = by_name.find(state_.steps[index].name);
-            if (found != by_name.end() && same_pass(plan_.order[index], old_plan_.order[found->second])) {
+            const auto found = by_key.find(state_.steps[index].key);
+            if (found != by_key.end() && same_pass(plan_.order[index], old_plan_.order[found->second])) {
                 take_record(index, found->second);
             }
         }
@@ -166,7 +167,7 @@ class StateTransfer {
 
     void take_transient(std::uint32_t slot, std::uint32_t old_version) {
         const std::uint32_t old_slot = old_plan_.object[old_plan_.resource(old_version)];
-        const auto is_transient = [](const Slot& of) { return of.owned && of.name.empty(); };
+        const auto is_transient = [](const Slot& of) { return of.owned && of.key.empty(); };
         if (old_.holds[old_slot] == old_version && taken_[old_slot] == none &&
             is_transient(old_.slots[old_slot]) && is_transient(state_.slots[slot]) &&
             state_.slots[slot].object == 0) {

@@ -25,7 +25,7 @@ struct Slot {
     bool filled = false;   // written since it was created, or bound by the host
     ObjectId object = 0;
     Value value;
-    std::string name;  // of a persistent texture or buffer; empty for all others
+    std::string key;   // of a persistent texture or buffer; empty for all others
     Storage declared;  // of a part: that of the whole texture
 };
 
@@ -79,6 +79,7 @@ struct Step {
     void (*invoke)(void*, Execution&) = nullptr;
     void* function = nullptr;
     std::string_view name;
+    std::string_view key;
     std::vector<Input> inputs{};
     std::vector<Output> outputs{};
     std::vector<Revision> revisions{};

@@ -11,7 +11,7 @@ namespace candela {
 namespace {
 
 std::size_t hash_of(const detail::Slot& slot) {
-    return std::hash<std::string>{}(slot.name) ^ slot.declared.hash();
+    return std::hash<std::string>{}(slot.key) ^ slot.declared.hash();
 }
 
 std::uint64_t byte_size(const detail::Slot& slot) {
@@ -34,7 +34,7 @@ class UnusedObjects {
     void provide(detail::Slot& wanted) {
         const auto [first, last] = by_hash_.equal_range(hash_of(wanted));
         const auto found = std::find_if(first, last, [&](const auto& entry) {
-            return entry.second->name == wanted.name && entry.second->declared == wanted.declared;
+            return entry.second->key == wanted.key && entry.second->declared == wanted.declared;
         });
         if (found == last) return;
         wanted.object = std::exchange(found->second->object, 0);

@@ -184,10 +184,11 @@ class CANDELA_API GraphRuntime {
 
     /// Switches to another graph and takes ownership of it. Handles of the old graph become invalid.
     ///
-    /// Persistent resources and values that both graphs declare with the same kind, name and description keep
-    /// their content. A pass that both graphs declare with the same name, accesses and parameters stays up to
-    /// date: it runs again only to provide results that were not kept, such as transients that were
-    /// overwritten. Imported textures and buffers must be bound again; imported values stay set.
+    /// Persistent resources and values that both graphs declare with the same kind, key and description keep
+    /// their content (FrameGraph::append_to_keys: keys are names unless something else is asked for). A pass
+    /// that both graphs declare with the same key, accesses and parameters stays up to date: it runs again
+    /// only to provide results that were not kept, such as transients that were overwritten. Imported
+    /// textures and buffers must be bound again; imported values stay set.
     ///
     /// Objects that the new graph does not use go to a free pool. The next call of `switch_to` reuses what it
     /// can from there and destroys the rest. If the back end throws, the exception passes through and the

@@ -214,12 +214,18 @@ class CANDELA_API FrameGraph {
     ~FrameGraph();
 
     // Names appear in messages and reports. They also identify persistent and imported resources across
-    // graphs (GraphRuntime::switch_to), so the names of persistent and imported resources must be unique
-    // within each kind (texture, buffer, value). The graph copies the names.
+    // graphs (GraphRuntime::switch_to; see append_to_keys), so the names of persistent and imported resources
+    // must be unique within each kind (texture, buffer, value). The graph copies the names.
 
     /// Appends `ending` to the names of all passes and resources that are declared from now on, so that a
     /// graph can contain the same passes several times, for example once for each view.
     void append_to_names(std::string_view ending);
+
+    /// GraphRuntime::switch_to finds what both graphs have by keys. A key is a name as it was given, with
+    /// `ending` instead of that of append_to_names; none: as the names. With it, what was made under one name
+    /// in a graph can go on under another one in the next, for example where two of a kind take turns. Keys
+    /// of passes, and those of persistent and imported resources within each kind, must be unique.
+    void append_to_keys(std::optional<std::string_view> ending);
 
     /// A texture with the given description. For an imported one, `compile` checks the usages against `desc`,
     /// and GraphRuntime::bind gives the actual description.
