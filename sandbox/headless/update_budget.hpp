@@ -21,8 +21,9 @@ class UpdateBudget {
 
     /// Changes the limit by the times of a frame that was rendered with it. What the other passes leave of
     /// the budget is for tracing, at least a third of it, so that light also follows where they take all the
-    /// time. While the world is at rest, tracing may take as long as the other passes: frames that follow
-    /// nothing then need not be short, and the picture is soon complete.
+    /// time. While the world is at rest, depth maps may take as long as what is not traced, at most a
+    /// quarter of a second: frames that follow nothing then need not be short, and the picture is soon
+    /// complete.
     void learn(const FrameReport& frame);
 
  private:
