@@ -183,12 +183,15 @@ void Renderer::State::install(Declared declared, const Configuration& configurat
     runtime_.switch_to(std::move(declared.graph));
     frame_ = std::move(declared.frame);
     backend_.set_host_passes(host_passes(frame_));
-    const bool same = shape == shape_ && same_radiance(configuration, configuration_);
+    FrameShape shape_before = shape_;
+    shape_before.turn = shape.turn;
+    const bool same = shape == shape_before && same_radiance(configuration, configuration_);
     if (!same || abandoned_) ++refinement_clock_.epoch;
     configuration_ = configuration;
     shape_ = shape;
     extensions_ = std::move(extensions);
     surfaces_bound_ = false;
+    next_set_is_complete_ &= same && shape.turn.prepares_next;
     last_passes_.clear();
 }
 
@@ -295,7 +298,9 @@ bool Renderer::State::render(const World& world, std::span<const RenderView> vie
         requests.push_back({view.camera, view.target.size, view.jitter});
         without_jitter.push_back({view.camera, view.target.size});
     }
-    shape.quality = quality_now(world, std::move(requests));
+    const bool moved = has_moved(world, std::move(requests));
+    shape.quality = quality_now(moved);
+    shape.turn = turn_now(!moved && shape.quality == Quality{});
     if (!compiled_ || shape != shape_) switch_to(configuration_, shape, extensions_);
     set_views(views);
     // The mean starts over after a frame that threw, but not after one that was abandoned.
@@ -324,7 +329,13 @@ bool Renderer::State::render(const World& world, std::span<const RenderView> vie
     waiting_ = frame_.waiting ? runtime_.value(*frame_.waiting) : 0;
     waits_ = waiting_ > 0 || (frame_.focus_state && runtime_.value(*frame_.focus_state).held);
     refine_ = !waits_ && refines();
-    pending_.push_back({to_report(last_passes_, index, milliseconds_since(start)), quality()});
+    if (frame_.refinement) {
+        refined_set_ = runtime_.value(*frame_.refinement).set;
+        surfel_set_ = runtime_.value(*frame_.refinement).surfel_set;
+    }
+    next_set_is_complete_ = frame_.waiting_of_next && runtime_.value(*frame_.waiting_of_next) == 0;
+    pending_.push_back({to_report(last_passes_, index, milliseconds_since(start)), quality(),
+                        frame_.waiting_of_next.has_value()});
     pending_.back().report.waiting_surfels = waiting_;
     match_times(backend_.timer().collect());
     if (runtime_.verifies()) runtime_.verify(world);
@@ -400,16 +411,35 @@ double Renderer::State::budget_ms(const Configuration& configuration) const {
     return gpu_.device().is_software() ? on_software : on_hardware;
 }
 
-/// Full quality, unless there is a frame budget and something moved within the last quarter of a second.
-Quality Renderer::State::quality_now(const World& world, std::vector<ViewRequest> requests) {
-    constexpr std::chrono::milliseconds settled(250);
-    const Clock::time_point now = Clock::now();
+/// Whether anything has, since the last frame.
+bool Renderer::State::has_moved(const World& world, std::vector<ViewRequest> requests) {
     const bool moved = world.revision() != last_revision_ || requests != last_requests_;
     last_revision_ = world.revision();
     last_requests_ = std::move(requests);
+    return moved;
+}
+
+/// Full quality, unless there is a frame budget and something moved within the last quarter of a second.
+Quality Renderer::State::quality_now(bool moved) {
+    constexpr std::chrono::milliseconds settled(250);
+    const Clock::time_point now = Clock::now();
     if (moved) last_move_ = now;
     if (budget_ms(configuration_) == 0.0 || now - last_move_ > settled) return {};
     return moved ? quality_in_motion_ : shape_.quality;
+}
+
+/// While nothing moves, the next set of surfels is prepared, and follows when it is complete. `rests`:
+/// nothing has moved, and the quality is full.
+SurfelTurn Renderer::State::turn_now(bool rests) {
+    if (!takes_turns(configuration_)) return {};
+    if (refined_set_ < turn_begin_) turn_begin_ = 0;
+    const bool is_due = refined_set_ + 1 >= turn_begin_ + frames_a_surfel_set;
+    if (rests && refine_ && is_due && std::exchange(next_set_is_complete_, false)) {
+        ++surfel_set_;
+        turn_begin_ = refined_set_ + 1;
+    }
+    const bool goes_on = refine_ || (abandoned_ && shape_.turn.prepares_next);
+    return {.place = surfel_set_ % 2, .prepares_next = rests && goes_on};
 }
 
 FrameContents Renderer::State::contents_now(const World& world) {
@@ -428,6 +458,7 @@ FrameContents Renderer::State::contents_now(const World& world) {
 }
 
 void Renderer::State::learn_cost(const PendingFrame& frame) {
+    if (frame.worked_ahead) return;
     const FrameCost cost = cost_of(frame.report);
     if (budget_ms(configuration_) > 0.0 && cost.pixels > 0.0) {
         const std::uint32_t configured =
@@ -438,6 +469,7 @@ void Renderer::State::learn_cost(const PendingFrame& frame) {
 
 void Renderer::State::set_refinement_clock() {
     refinement_clock_.round += std::exchange(refine_, false) ? 1 : 0;
+    refinement_clock_.surfel_set = takes_turns(configuration_) ? std::optional(surfel_set_) : std::nullopt;
     if (frame_.refinement_clock) runtime_.set(*frame_.refinement_clock, refinement_clock_);
 }
 

@@ -58,6 +58,7 @@ class CANDELA_PRIVATE Renderer::State {
     struct PendingFrame {
         FrameReport report;
         Quality quality;
+        bool worked_ahead = false;  // for later frames, which it would not have done if anything had moved
     };
 
     /// The surfaces that the host has drawn of a view, in the last frame.
@@ -96,7 +97,9 @@ class CANDELA_PRIVATE Renderer::State {
     [[nodiscard]] const ViewHandles& view_handles(std::size_t view) const;
     [[nodiscard]] FrameContents contents_now(const World& world);
     [[nodiscard]] double budget_ms(const Configuration& configuration) const;
-    [[nodiscard]] Quality quality_now(const World& world, std::vector<ViewRequest> requests);
+    [[nodiscard]] bool has_moved(const World& world, std::vector<ViewRequest> requests);
+    [[nodiscard]] Quality quality_now(bool moved);
+    [[nodiscard]] SurfelTurn turn_now(bool rests);
     void learn_cost(const PendingFrame& frame);
     void set_refinement_clock();
     void set_update_clock();
@@ -129,6 +132,10 @@ class CANDELA_PRIVATE Renderer::State {
     FrameHandles frame_;
     std::uint64_t epoch_ = 0;  // incremented by `invalidate`: cached scene data is void
     RefinementClock refinement_clock_;
+    std::uint32_t refined_set_ = 0;  // Refinement::set of the last frame
+    std::uint32_t surfel_set_ = 0;   // Refinement::surfel_set
+    std::uint32_t turn_begin_ = 0;   // Refinement::set when it took its turn, or 0 if the mean began later
+    bool next_set_is_complete_ = false;  // the set that the last frames have prepared
     UpdateClock update_clock_;
     std::uint32_t waiting_ = 0;   // surfels that wait for later frames
     bool waits_ = false;          // whether any do, or others may have to be placed

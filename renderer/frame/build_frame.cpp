@@ -71,6 +71,7 @@ std::optional<ValueHandle<Refinement>> add_cameras(FrameGraph& graph, const Conf
         }
     }
     end_view(graph);
+    frame.refinement = refined.refinement;
     return refined.refinement;
 }
 
@@ -139,32 +140,59 @@ SurfelInputs add_surfel_inputs(FrameGraph& graph, Gpu& gpu, const WantedVpls& wa
     return inputs;
 }
 
-/// A set of VPLs with their light, and what their depth maps are made of.
-struct VplSet {
-    Vpls vpls;
+/// What is traced of a set of surfels, independent of light, and what their depth maps are made of.
+struct TracedSet {
+    SurfelVisibility visibility;
     MappedVpls mapped;
     std::optional<ValueHandle<std::uint32_t>> waiting;  ///< SurfelUpdates::waiting
 };
 
-VplSet add_surfel_set(FrameGraph& graph, Gpu& gpu, const WantedVpls& wanted, const LitScene& lit,
-                      std::optional<ValueHandle<Refinement>> refinement, const SurfelInputs& inputs) {
+/// What is declared from now on belongs to the set in that place, also in graphs in which it has another
+/// role.
+void begin_place(FrameGraph& graph, std::optional<std::uint32_t> place) {
+    if (place) graph.append_to_keys(*place == 0 ? "" : " (odd set)");
+}
+
+void end_place(FrameGraph& graph) {
+    graph.append_to_keys(std::nullopt);
+}
+
+TracedSet add_traced_set(FrameGraph& graph, Gpu& gpu, const WantedVpls& wanted, const LitScene& lit,
+                         const SurfelSetChoice& set, const SurfelInputs& inputs) {
+    begin_place(graph, set.place);
     const ValueHandle<SpreadSurfels> spread =
-        add_surfel_spread(graph, lit.scene, refinement, inputs.foci.foci, wanted.settings);
+        add_surfel_spread(graph, lit.scene, set, inputs.foci.foci, wanted.settings);
     const Surfels surfels = add_surfels(graph, gpu, lit.scene, lit.tracing, inputs.motion, spread,
                                         inputs.foci.of_maps, wanted.settings.count);
     std::optional<SurfelUpdates> updates;
     if (inputs.update_clock && wanted.settings.updates > 0) {
-        updates = add_surfel_updates(graph, surfels, lit.tracing, inputs.motion, inputs.foci, refinement,
+        updates = add_surfel_updates(graph, surfels, lit.tracing, inputs.motion, inputs.foci, set,
                                      *inputs.update_clock);
     }
     const auto tasks = updates ? std::optional(updates->tasks) : std::nullopt;
     const SurfelVisibility visibility =
         add_surfel_visibility(graph, gpu, lit.tracing, surfels, inputs.motion, wanted.balanced, tasks);
-    return {.vpls = add_surfel_light(graph, gpu, lit.tracing, visibility, inputs.sources,
-                                     wanted.settings.bounces, wanted.shown),
+    end_place(graph);
+    return {.visibility = visibility,
             .mapped = {surfels.counts, MappedSurfels{surfels.surfels, surfels.maps, inputs.motion, tasks},
                        inputs.foci.of_maps},
             .waiting = updates ? std::optional(updates->waiting) : std::nullopt};
+}
+
+/// A set of VPLs with their light, and what their depth maps are made of.
+struct VplSet {
+    Vpls vpls;
+    MappedVpls mapped;
+    std::optional<ValueHandle<std::uint32_t>> waiting;  ///< as in TracedSet
+};
+
+VplSet add_surfel_set(FrameGraph& graph, Gpu& gpu, const WantedVpls& wanted, const LitScene& lit,
+                      const SurfelSetChoice& choice, const SurfelInputs& inputs) {
+    const TracedSet set = add_traced_set(graph, gpu, wanted, lit, choice, inputs);
+    return {.vpls = add_surfel_light(graph, gpu, lit.tracing, set.visibility, inputs.sources,
+                                     wanted.settings.bounces, wanted.shown),
+            .mapped = set.mapped,
+            .waiting = set.waiting};
 }
 
 VplSet add_path_set(FrameGraph& graph, Gpu& gpu, const WantedVpls& wanted, const LitScene& lit,
@@ -177,10 +205,45 @@ VplSet add_path_set(FrameGraph& graph, Gpu& gpu, const WantedVpls& wanted, const
 
 /// `inputs`: none for VPLs on paths.
 VplSet add_vpl_set(FrameGraph& graph, Gpu& gpu, const WantedVpls& wanted, const LitScene& lit,
-                   std::optional<ValueHandle<Refinement>> refinement,
-                   const std::optional<SurfelInputs>& inputs) {
-    return inputs ? add_surfel_set(graph, gpu, wanted, lit, refinement, *inputs)
-                  : add_path_set(graph, gpu, wanted, lit, refinement);
+                   const SurfelSetChoice& choice, const std::optional<SurfelInputs>& inputs) {
+    return inputs ? add_surfel_set(graph, gpu, wanted, lit, choice, *inputs)
+                  : add_path_set(graph, gpu, wanted, lit, choice.refinement);
+}
+
+/// What all VPLs of a set have in common, and their depth maps.
+struct MappedSet {
+    VplCommon common;
+    std::optional<TextureHandle> maps;  ///< if visibility is found by maps
+};
+
+MappedSet add_mapped_set(FrameGraph& graph, Gpu& gpu, const LitScene& lit,
+                         const VplVisibilitySettings& visibility, const MappedVpls& mapped,
+                         ValueHandle<VplCounts> counts, std::optional<std::uint32_t> place) {
+    begin_place(graph, place);
+    MappedSet set{add_vpl_constants(graph, gpu, lit.tracing.metrics, counts, mapped.focus, visibility), {}};
+    if (visibility.method == VplVisibility::maps) {
+        set.maps = add_vpl_maps(graph, gpu, lit.tracing, mapped, set.common);
+    }
+    end_place(graph);
+    return set;
+}
+
+/// Makes a part of the next set of surfels. Nothing in the frame reads it.
+ValueHandle<std::uint32_t> prepare_next_set(FrameGraph& graph, Gpu& gpu, const WantedVpls& wanted,
+                                            const LitScene& lit, const SurfelSetChoice& choice,
+                                            const SurfelInputs& inputs,
+                                            const VplVisibilitySettings& visibility) {
+    graph.append_to_names(" (next set)");
+    const TracedSet set = add_traced_set(graph, gpu, wanted, lit, choice, inputs);
+    const MappedSet mapped =
+        add_mapped_set(graph, gpu, lit, visibility, set.mapped, set.mapped.counts, choice.place);
+    graph.append_to_names("");
+    graph.add("keep-next-set", [&](Pass& pass) {
+        pass.side_effect();
+        pass.read(set.visibility.rows, Usage::storage);
+        if (mapped.maps) pass.read(*mapped.maps, Usage::sampled);
+    });
+    return *set.waiting;
 }
 
 /// The light of another set of as many VPLs, with rays instead of depth maps.
@@ -189,7 +252,7 @@ VplLight add_other_set(FrameGraph& graph, Gpu& gpu, WantedVpls wanted, const Lit
     wanted.settings.seed += 0x80000000U;  // far from those of refinement
     wanted.settings.updates = 0;
     graph.append_to_names(" (other set)");
-    const VplSet set = add_vpl_set(graph, gpu, wanted, lit, std::nullopt, inputs);
+    const VplSet set = add_vpl_set(graph, gpu, wanted, lit, {}, inputs);
     const bool occluded = visibility.method != VplVisibility::none;
     if (occluded) visibility.method = VplVisibility::rays;
     const VplLight light{.vpls = set.vpls,
@@ -209,20 +272,23 @@ std::optional<SharedVpls> add_vpls(FrameGraph& graph, Gpu& gpu, const Configurat
     const WantedVpls wanted = wanted_vpls(configuration, shape, extended);
     if (!wanted.any()) return std::nullopt;
     std::optional<SurfelInputs> inputs;
+    SurfelSetChoice choice{.refinement = refinement};
     if (wanted.settings.placement == VplPlacement::surfels) {
         inputs = add_surfel_inputs(graph, gpu, wanted, lit, refinement, frame);
+        if (takes_turns(configuration)) choice.place = shape.turn.place;
     }
-    const VplSet set = add_vpl_set(graph, gpu, wanted, lit, refinement, inputs);
+    const VplSet set = add_vpl_set(graph, gpu, wanted, lit, choice, inputs);
     frame.vpls = set.vpls;
     frame.waiting = set.waiting;
-    VplLight light{.vpls = set.vpls,
-                   .common = add_vpl_constants(graph, gpu, frame.metrics, set.vpls.counts, set.mapped.focus,
-                                               configuration.visibility)};
-    if (configuration.visibility.method == VplVisibility::maps) {
-        light.maps = add_vpl_maps(graph, gpu, lit.tracing, set.mapped, light.common);
-        if (contents.emitters || contents.sky || wanted.balanced) light.rays = lit.tracing;
-    } else if (configuration.visibility.method == VplVisibility::rays) {
-        light.rays = lit.tracing;
+    const VplVisibilitySettings& visibility = configuration.visibility;
+    const MappedSet mapped =
+        add_mapped_set(graph, gpu, lit, visibility, set.mapped, set.vpls.counts, choice.place);
+    VplLight light{.vpls = set.vpls, .common = mapped.common, .maps = mapped.maps};
+    const bool has_unmapped = contents.emitters || contents.sky || wanted.balanced;
+    if (visibility.method == VplVisibility::rays || (light.maps && has_unmapped)) light.rays = lit.tracing;
+    if (choice.place && shape.turn.prepares_next) {
+        choice.place = 1 - *choice.place;
+        frame.waiting_of_next = prepare_next_set(graph, gpu, wanted, lit, choice, *inputs, visibility);
     }
     SharedVpls shared{light, add_vpl_order(graph, gpu, set.vpls), wanted.count};
     if (std::ranges::any_of(shape.views, &ViewShape::estimate_error)) {
@@ -295,6 +361,10 @@ WorldContents contents_of(const World& world, SceneCheck& check, std::uint32_t v
     const Environment environment = accepted_environment(world, check);
     of_frame.sky = environment.radiance != glm::vec3(0.0F);
     return contents;
+}
+
+bool takes_turns(const Configuration& configuration) {
+    return configuration.refinement.enabled && configuration.vpls.updates > 0;
 }
 
 FrameHandles build_frame(FrameGraph& graph, Gpu& gpu, const Configuration& configuration,

@@ -51,8 +51,11 @@ struct FrameHandles {
     std::optional<Vpls> vpls;                              ///< none without indirect light
     std::optional<ValueHandle<UpdateClock>> update_clock;  ///< imported; none without VplSettings::updates
     std::optional<ValueHandle<std::uint32_t>> waiting;     ///< SurfelUpdates::waiting, likewise
-    std::optional<ValueHandle<FocusState>> focus_state;    ///< SurfelFoci::state, likewise
+    /// The same of the set that is prepared; none if none is.
+    std::optional<ValueHandle<std::uint32_t>> waiting_of_next;
+    std::optional<ValueHandle<FocusState>> focus_state;            ///< SurfelFoci::state, likewise
     std::optional<ValueHandle<RefinementClock>> refinement_clock;  ///< imported; none without refinement
+    std::optional<ValueHandle<Refinement>> refinement;             ///< likewise
     /// Imported: Renderer::set_receivers; none if there are none.
     std::optional<ValueHandle<std::vector<Receiver>>> receivers;
     std::optional<ReceivedLight> received;  ///< none either if no light is shown
@@ -89,12 +92,23 @@ struct WorldContents {
 /// What the world contains of what `check` accepts. `vpls`: VplSettings::count.
 [[nodiscard]] WorldContents contents_of(const World& world, SceneCheck& check, std::uint32_t vpls);
 
+/// Sets of surfels take turns: see SurfelSetChoice.
+struct SurfelTurn {
+    std::uint32_t place = 0;     ///< of the set that lights the frame
+    bool prepares_next = false;  ///< the frame also makes a part of the next set
+    bool operator==(const SurfelTurn&) const = default;
+};
+/// Whether they do with this configuration: where the time of a frame is bounded, the next set is made in
+/// parts.
+[[nodiscard]] bool takes_turns(const Configuration& configuration);
+
 /// What the passes of a frame depend on.
 struct FrameShape {
     std::vector<ViewShape> views{1};  ///< at least one
     Quality quality;                  ///< of all views
     FrameContents contents;
     bool receivers = false;  ///< the host has any
+    SurfelTurn turn{};
     bool operator==(const FrameShape&) const = default;
 };
 

@@ -33,18 +33,29 @@ class TracingPass {
             const TracedContent<int> kept(graph, pass, "kept");
             pass.run([=, this](Execution& run) {
                 run.reserve(buffer, run.value(size_));
+                const std::vector<ObjectId> objects{run.object(buffer)};
                 if (run.value(key_) < 0) {
                     kept.forget(run);
+                } else if (tasks_) {
+                    done_ = kept.tasks_done(run, *tasks_, run.value(key_), objects, objects);
                 } else {
-                    outdated_ = kept.outdated(run, run.value(motion_), run.value(key_), {run.object(buffer)});
+                    outdated_ = kept.outdated(run, run.value(motion_), run.value(key_), objects);
                 }
             });
         });
         runtime_.switch_to(compile(std::move(graph)).take());
     }
 
+    /// Which tasks up to those of this number the pass has done.
+    TasksDone done(std::uint64_t number, int key, std::uint64_t size) {
+        static_cast<void>(outdated(0, key, size, number));
+        return done_;
+    }
+
     /// What the pass has to trace again. `step`: steps of motion so far, of which the last moved one thing.
-    std::optional<std::vector<Box>> outdated(std::uint64_t step, int key, std::uint64_t size) {
+    std::optional<std::vector<Box>> outdated(std::uint64_t step, int key, std::uint64_t size,
+                                             std::optional<std::uint64_t> tasks = std::nullopt) {
+        tasks_ = tasks;
         SceneMotion motion;
         motion.step = step;
         motion.everything = false;
@@ -65,10 +76,23 @@ class TracingPass {
     ValueHandle<SceneMotion> motion_;
     ValueHandle<int> key_;
     ValueHandle<std::uint64_t> size_;
+    std::optional<std::uint64_t> tasks_;  // number; none: all that is outdated is traced
     std::optional<std::vector<Box>> outdated_;
+    TasksDone done_ = TasksDone::none;
 };
 
 }  // namespace
+
+TEST_CASE_FIXTURE(TracingPass, "of numbered tasks, it is known which are done as long as none is left out") {
+    CHECK(done(4, 1, 8) == TasksDone::none);
+    CHECK(done(4, 1, 8) == TasksDone::all);
+    CHECK(done(5, 1, 8) == TasksDone::all_before);
+    CHECK(done(5, 1, 8) == TasksDone::all);
+    CHECK(done(7, 1, 8) == TasksDone::none);
+    CHECK(done(7, 2, 8) == TasksDone::none);     // another key
+    CHECK(done(8, 2, 1000) == TasksDone::none);  // another object
+    CHECK(done(9, 2, 1000) == TasksDone::all_before);
+}
 
 TEST_CASE_FIXTURE(TracingPass, "all of it is traced first, then where something has moved") {
     CHECK(outdated(0, 1, 8) == std::nullopt);

@@ -104,7 +104,8 @@ struct ShadowSettings {
 };
 
 /// Refinement: while nothing moves, frames are averaged. Each has its own sample position in the pixels and
-/// its own VPLs on paths; surfels change every frames_a_surfel_set frames.
+/// its own VPLs on paths; surfels change every frames_a_surfel_set frames, or with VplSettings::updates when
+/// the next set, which is then made a part at a time, is complete.
 struct RefinementSettings {
     bool enabled = false;
     std::uint32_t frames = 1024;  ///< frames to average; without VPLs at most 64 are averaged

@@ -12,6 +12,9 @@
 
 namespace candela {
 
+/// Of tasks that have numbers: none of them, all before those of a number, or these, too.
+enum class TasksDone : std::uint8_t { none, all_before, all };
+
 /// What rays through the scene have found, in persistent buffers or textures that a pass updates. Where
 /// nothing has moved it stays, as long as the key is the same, which says what else it was made from, and as
 /// long as the objects that hold it are: Execution::reserve may have replaced them.
@@ -43,16 +46,20 @@ class TracedContent {
         return changed;
     }
 
-    /// Whether the content is there, for a pass that traces by the tasks of a number (SurfelTasks) and has
-    /// done all before them. Its keys have to be others than those of passes that call `outdated`.
-    [[nodiscard]] bool holds(Execution& run, std::uint64_t number, Key key, const std::vector<ObjectId>& held,
-                             std::vector<ObjectId> objects) const {
+    /// Which tasks have been done, for a pass that traces by the tasks of a number (SurfelTasks). Its keys
+    /// have to be others than those of passes that call `outdated`. The pass then has to do the rest.
+    [[nodiscard]] TasksDone tasks_done(Execution& run, std::uint64_t number, Key key,
+                                       const std::vector<ObjectId>& held,
+                                       std::vector<ObjectId> objects) const {
         Record now{std::move(key), std::move(objects), number};
         const Record* const last = run.previous(record_);
-        const bool is_there = last != nullptr && last->key == now.key && last->objects == held &&
-                              (last->step == number || last->step + 1 == number);
+        TasksDone done = TasksDone::none;
+        if (last != nullptr && last->key == now.key && last->objects == held) {
+            if (last->step == number) done = TasksDone::all;
+            if (last->step + 1 == number) done = TasksDone::all_before;
+        }
         run.set(record_, std::move(now));
-        return is_there;
+        return done;
     }
 
     /// The pass overwrites the content with something else.

@@ -238,14 +238,13 @@ SurfelSet placed_in_world(const SpreadSurfels& spread, const SceneLayout& layout
 }
 
 ValueHandle<SpreadSurfels> add_surfel_spread(FrameGraph& graph, const SceneData& scene,
-                                             std::optional<ValueHandle<Refinement>> refinement,
-                                             ValueHandle<std::vector<Focus>> foci,
+                                             const SurfelSetChoice& set, ValueHandle<std::vector<Focus>> foci,
                                              const VplSettings& settings) {
     return graph.add("surfel-spread", [&](Pass& pass) {
         pass.read(scene.layout);
         pass.read(scene.placement);
         pass.read(foci);
-        if (refinement) pass.read(*refinement);
+        set.read(pass);
         const SurfelCounts counts{.reflecting = settings.bounces > 0 ? settings.count : 0,
                                   .emitting = emitting_surfels(settings.count)};
         pass.parameter(counts);
@@ -253,9 +252,8 @@ ValueHandle<SpreadSurfels> add_surfel_spread(FrameGraph& graph, const SceneData&
         pass.keeps_state();
         const auto out = pass.update(graph.value<SpreadSurfels>("spread surfels"));
         pass.run([=, layout = scene.layout, placement = scene.placement](Execution& run) {
-            const std::uint32_t set = refinement ? run.value(*refinement).surfel_set : 0;
             run.set(out, spread(run.previous(out), run.value(layout), run.value(placement), run.value(foci),
-                                counts, settings.seed + set));
+                                counts, settings.seed + set.number(run)));
         });
         return out;
     });

@@ -51,12 +51,12 @@ struct SpreadSurfels {
 [[nodiscard]] SurfelSet placed_in_world(const SpreadSurfels& spread, const SceneLayout& layout,
                                         const ScenePlacement& placement);
 
-/// Adds node `surfel-spread` (CPU): places surfels on the items, densely in the foci; with refinement, those
-/// of the current surfel set. Surfels belong to the items of the scene and move with them: all are placed
-/// again when an item is added, removed or changes its shape. Depends on the scene's layout and placement, on
-/// foci and refinement; its own last result saves time.
+/// Adds node `surfel-spread` (CPU): places the surfels of a set on the items, densely in the foci. Surfels
+/// belong to the items of the scene and move with them: all are placed again when an item is added, removed
+/// or changes its shape. Depends on the scene's layout and placement, on foci and the set; its own last
+/// result saves time.
 [[nodiscard]] ValueHandle<SpreadSurfels> add_surfel_spread(FrameGraph& graph, const SceneData& scene,
-                                                           std::optional<ValueHandle<Refinement>> refinement,
+                                                           const SurfelSetChoice& set,
                                                            ValueHandle<std::vector<Focus>> foci,
                                                            const VplSettings& settings);
 

@@ -17,7 +17,7 @@ namespace {
 /// What the tasks of a frame depend on besides the surfels.
 struct QueueKey {
     float ray_offset = 0.0F;       // metres
-    std::uint32_t surfel_set = 0;  // Refinement
+    std::uint32_t surfel_set = 0;  // its number
     bool operator==(const QueueKey&) const = default;
 };
 
@@ -165,7 +165,7 @@ struct UpdateNode {
     Tracing tracing;
     ValueHandle<SceneMotion> motion;
     SurfelFoci foci;
-    std::optional<ValueHandle<Refinement>> refinement;
+    SurfelSetChoice set;
     ValueHandle<UpdateClock> clock;
     ValueHandle<Queue> queue;
     SurfelUpdates out;
@@ -221,19 +221,27 @@ std::vector<Candidate> candidates(const Execution& run, const UpdateNode& node, 
     return all;
 }
 
+/// How many of the surfels may be traced in this frame. `is_other`: they are other ones than in the last
+/// frame.
+std::size_t limit(const Execution& run, const UpdateNode& node, std::size_t surfels, bool is_other) {
+    constexpr std::size_t most_ahead = 256;  // about a quarter of a second on two cores of a CPU
+    constexpr std::size_t parts = frames_a_surfel_set - 1;
+    if (node.set.is_next(run)) return std::min((surfels + parts - 1) / parts, most_ahead);
+    return is_other ? std::numeric_limits<std::size_t>::max() : run.value(node.clock).limit;
+}
+
 void plan(Execution& run, const UpdateNode& node) {
     const Queue* const last = run.previous(node.queue);
     const SceneMotion& motion = run.value(node.motion);
     const float ray_offset = run.value(node.tracing.metrics).ray_offset();
     const Changes changes = changes_since(motion, last, 4.0F * ray_offset);
     Queue now{.surfels = {},
-              .key = {ray_offset, node.refinement ? run.value(*node.refinement).surfel_set : 0},
+              .key = {ray_offset, node.set.number(run)},
               .step = motion.step,
               .moved = last_steps(motion, last)};
     const std::vector<Candidate> all = candidates(run, node, last, now, changes);
-    const bool at_once = last != nullptr && (last->key != now.key || run.value(*node.foci.state).renewed);
-    const std::vector<bool> chosen =
-        most_urgent(all, at_once ? std::numeric_limits<std::size_t>::max() : run.value(node.clock).limit);
+    const bool is_other = last != nullptr && (last->key != now.key || run.value(*node.foci.state).renewed);
+    const std::vector<bool> chosen = most_urgent(all, limit(run, node, all.size(), is_other));
     const SurfelTasks* const tasks_before = run.previous(node.out.tasks);
     SurfelTasks tasks{
         .of = {}, .changed = {}, .number = tasks_before != nullptr ? tasks_before->number + 1 : 0};
@@ -261,8 +269,7 @@ void plan(Execution& run, const UpdateNode& node) {
 
 SurfelUpdates add_surfel_updates(FrameGraph& graph, const Surfels& surfels, const Tracing& tracing,
                                  ValueHandle<SceneMotion> motion, const SurfelFoci& foci,
-                                 std::optional<ValueHandle<Refinement>> refinement,
-                                 ValueHandle<UpdateClock> clock) {
+                                 const SurfelSetChoice& set, ValueHandle<UpdateClock> clock) {
     return graph.add("surfel-updates", [&](Pass& pass) {
         pass.keeps_state();
         pass.read(surfels.ids);
@@ -273,13 +280,13 @@ SurfelUpdates add_surfel_updates(FrameGraph& graph, const Surfels& surfels, cons
         pass.read(motion);
         pass.read(foci.foci);
         pass.read(*foci.state);
-        if (refinement) pass.read(*refinement);
+        set.read(pass);
         pass.read(clock);
         const UpdateNode node{.surfels = surfels,
                               .tracing = tracing,
                               .motion = motion,
                               .foci = foci,
-                              .refinement = refinement,
+                              .set = set,
                               .clock = clock,
                               .queue = pass.update(graph.value<Queue>("queue of surfels")),
                               .out = {.tasks = pass.update(graph.value<SurfelTasks>("tasks of surfels")),

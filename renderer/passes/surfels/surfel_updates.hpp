@@ -46,12 +46,12 @@ struct SurfelUpdates {
 /// times the part of what it sees that has changed, summed over the frames in which it waits. The most urgent
 /// ones come first, so that all get their turn, also while things move all the time. When nothing waits, all
 /// is as if it had been traced at once. Another set of surfels is traced at once, and so are those of other
-/// foci, unless things or views move. Depends on surfels, motion, foci, refinement and clock, and on its own
-/// last result.
+/// foci, unless things or views move. Of a set that is prepared for later frames (SurfelSetChoice::is_next),
+/// a part is traced in each frame, so that it is ready in time if it is not too large. Depends on surfels,
+/// motion, foci, set and clock, and on its own last result.
 [[nodiscard]] SurfelUpdates add_surfel_updates(FrameGraph& graph, const Surfels& surfels,
                                                const Tracing& tracing, ValueHandle<SceneMotion> motion,
-                                               const SurfelFoci& foci,
-                                               std::optional<ValueHandle<Refinement>> refinement,
+                                               const SurfelFoci& foci, const SurfelSetChoice& set,
                                                ValueHandle<UpdateClock> clock);
 
 }  // namespace candela

@@ -129,15 +129,30 @@ void clear_results(const Gpu& gpu, const Execution& run, const VisibilityNode& n
     outdated.in_place = true;
 }
 
-/// Around what has changed since the results were traced that are in the objects `held`.
-std::optional<std::vector<Box>> changes(Execution& run, const VisibilityNode& node,
-                                        const std::vector<ObjectId>& held) {
+/// What has changed, and what is to be traced of each surfel.
+struct OutdatedParts {
+    std::optional<std::vector<Box>> boxes;  // see changed_boxes; none: nothing is known
+    std::vector<std::uint32_t> tasks;       // SurfelTasks::of
+};
+
+/// Since the results were traced that are in the objects `held`.
+OutdatedParts outdated_parts(Execution& run, const VisibilityNode& node, const KeptSurfels& kept,
+                             const std::vector<ObjectId>& held) {
     const VisibilityKey key{run.value(node.tracing.metrics).ray_offset(), node.planned.has_value()};
     const std::vector<ObjectId> objects = objects_of(run, node);
-    if (!node.planned) return node.known.outdated(run, run.value(node.motion), key, held, objects);
+    if (!node.planned) {
+        return {node.known.outdated(run, run.value(node.motion), key, held, objects), tasks_of(kept)};
+    }
     const SurfelTasks& tasks = run.value(*node.planned);
-    return node.known.holds(run, tasks.number, key, held, objects) ? std::optional(tasks.changed)
-                                                                   : std::nullopt;
+    switch (node.known.tasks_done(run, tasks.number, key, held, objects)) {
+        case TasksDone::all:
+            return {std::vector<Box>{}, std::vector<std::uint32_t>(tasks.of.size())};
+        case TasksDone::all_before:
+            return {tasks.changed, tasks.of};
+        case TasksDone::none:
+            break;
+    }
+    return {std::nullopt, tasks.of};
 }
 
 /// Makes room for the results, and keeps the last ones where the shaders find them.
@@ -151,9 +166,8 @@ Outdated prepare_results(const Gpu& gpu, Execution& run, const VisibilityNode& n
     if (kept.keeps_factors() && !kept.in_place) copy_results(gpu, run, node, kept.last_count);
     const std::vector<ObjectId> held = objects_of(run, node);
     reserve_results(run, node, count);
-    outdated.changed = changes(run, node, held);
-    if (!kept.keeps_factors()) outdated.changed.reset();
-    const std::vector<std::uint32_t> tasks = node.planned ? run.value(*node.planned).of : tasks_of(kept);
+    auto [boxes, tasks] = outdated_parts(run, node, kept, held);
+    if (kept.keeps_factors()) outdated.changed = std::move(boxes);
     const bool nothing_known = node.planned && std::ranges::all_of(tasks, [](std::uint32_t task) {
                                    return (task & (SURFEL_NO_FACTORS | SURFEL_COLUMN)) != 0;
                                });

@@ -43,10 +43,26 @@ Refined add_refinement(FrameGraph& graph, ValueHandle<RefinementClock> clock, co
                 const bool next_surfels = now.set > 0 && now.set % frames_a_surfel_set == 0;
                 now.surfel_set = last->surfel_set + (next_surfels ? 1 : 0);
             }
+            const std::optional<std::uint32_t> in_turn = run.value(clock).surfel_set;
+            if (in_turn) now.surfel_set = *in_turn;
             run.set(out.refinement, now);
         });
         return out;
     });
+}
+
+void SurfelSetChoice::read(Pass& pass) const {
+    if (refinement) pass.read(*refinement);
+    pass.parameter(place);
+}
+
+bool SurfelSetChoice::is_next(const Execution& run) const {
+    return refinement && place && run.value(*refinement).surfel_set % 2 != *place;
+}
+
+std::uint32_t SurfelSetChoice::number(const Execution& run) const {
+    if (!refinement) return 0;
+    return run.value(*refinement).surfel_set + (is_next(run) ? 1 : 0);
 }
 
 ValueHandle<CameraView> add_refined_view(FrameGraph& graph, ValueHandle<ViewRequest> request,

@@ -18,6 +18,9 @@ namespace candela {
 struct RefinementClock {
     std::uint64_t epoch = 0;  ///< a new value starts the means over
     std::uint64_t round = 0;  ///< a new value asks for the next set
+    /// Where sets of surfels take turns, the one that lights the frame; none: Refinement::surfel_set advances
+    /// by itself.
+    std::optional<std::uint32_t> surfel_set;
     bool operator==(const RefinementClock&) const = default;
 };
 
@@ -31,9 +34,23 @@ inline constexpr std::uint32_t frames_a_surfel_set = 8;
 /// visibility between surfels remains valid.
 struct Refinement {
     std::uint32_t set = 0;         ///< k
-    std::uint32_t surfel_set = 0;  ///< advances by 1 every frames_a_surfel_set sets
+    std::uint32_t surfel_set = 0;  ///< advances by 1 every frames_a_surfel_set sets, or as the clock says
     std::uint64_t epoch = 0;       ///< RefinementClock::epoch
     bool operator==(const Refinement&) const = default;
+};
+
+/// Which set of surfels passes make: that of the frame. Where sets take turns there are two places, one for
+/// the sets of even and one for those of odd numbers: passes in one of them make the set of the frame, while
+/// those in the other prepare the next one. Their roles change from frame to frame, but not what is in the
+/// places.
+struct SurfelSetChoice {
+    std::optional<ValueHandle<Refinement>> refinement{};  ///< none: it is always set 0
+    std::optional<std::uint32_t> place{};                 ///< 0 or 1; none: sets take no turns
+
+    void read(Pass& pass) const;
+    [[nodiscard]] std::uint32_t number(const Execution& run) const;
+    /// Whether it is the set that is to light later frames.
+    [[nodiscard]] bool is_next(const Execution& run) const;
 };
 
 /// Results of node `refinement`.

@@ -112,7 +112,9 @@ void update_surfel_maps(Gpu& gpu, Execution& run, const MapNode& node, const Map
                  .changed = {}};
     if (surfels.tasks) {
         const SurfelTasks& tasks = run.value(*surfels.tasks);
-        if (node.drawn.holds(run, tasks.number, key, textures, textures)) draw.changed = tasks.changed;
+        const TasksDone done = node.drawn.tasks_done(run, tasks.number, key, textures, textures);
+        if (done == TasksDone::all) return;
+        if (done == TasksDone::all_before) draw.changed = tasks.changed;
         upload<std::uint32_t>(gpu, run, node.tasks, tasks.of);
         draw.has_tasks = true;
         draw.cleared = &tasks.of;
