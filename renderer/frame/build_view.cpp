@@ -125,12 +125,15 @@ std::optional<LightLists> add_lists(FrameGraph& graph, Gpu& gpu, const Configura
 }
 
 /// Irradiance that is gathered from the VPLs before surfaces are shaded.
-GatheredLight gather_vpls(FrameGraph& graph, Gpu& gpu, const Surfaces& surfaces, const SharedVpls& vpls,
-                          const ViewData& view, bool directed, ViewHandles& out) {
+GatheredLight gather_vpls(FrameGraph& graph, Gpu& gpu, const Surfaces& surfaces, const SharedFrame& shared,
+                          const ViewData& view, ViewHandles& out) {
+    const SharedVpls& vpls = *shared.vpls;
+    const bool directed = shaded_parts(shared, out).bumpy;
     const GatheredVpls gathered =
         add_vpl_gather(graph, gpu, surfaces, vpls.light, vpls.order, view, out.interleave, directed);
     if (out.interleave == 1) return gathered.light;
-    out.indirect = add_vpl_reconstruct(graph, gpu, surfaces, gathered, vpls.light, view);
+    const std::uint32_t filled_from = shared.quality.scale < 1.0F ? 4 : 2;
+    out.indirect = add_vpl_reconstruct(graph, gpu, surfaces, gathered, vpls.light, view, filled_from);
     return out.indirect->light;
 }
 
@@ -398,8 +401,7 @@ void build_view(FrameGraph& graph, Gpu& gpu, const SharedFrame& shared, const Vi
         parts.list_entries = out.lists->entries;
     }
     if (gathers) {
-        const GatheredLight gathered = gather_vpls(graph, gpu, surfaces_of(parts), *shared.vpls, view,
-                                                   shaded_parts(shared, out).bumpy, out);
+        const GatheredLight gathered = gather_vpls(graph, gpu, surfaces_of(parts), shared, view, out);
         parts.indirect = gathered.irradiance;
         parts.indirect_flow = gathered.flow;
     }

@@ -1,5 +1,5 @@
-// Gathers VPLs for the listed pixels, for which reconstruction found too few classes. Such a pixel sums every second
-// VPL; neighbouring pixels sum different halves. The result is the mean of both estimates, weighted by the number of
+// Gathers VPLs for the listed pixels, for which reconstruction found too few classes. Such a pixel sums one in one_in
+// VPLs; neighbouring pixels sum different ones. The result is the mean of both estimates, weighted by the number of
 // VPLs behind each: theory.md, "Pixels without enough neighbours". One invocation per listed pixel.
 #include "bindings.glsl"
 #include "loop_part.glsl"
@@ -15,6 +15,8 @@ layout(std430, binding = BINDING_FILL_LIST) readonly restrict buffer FillList {
     uint fill_pixels[];
 };
 
+uniform uint one_in;  // a power of two
+
 layout(rgba32f, binding = IMAGE_INDIRECT) restrict uniform image2D reconstructed;
 #ifdef DIRECTED
 layout(rgba32f, binding = IMAGE_INDIRECT_DIRECTION) restrict uniform image2D reconstructed_flow;
@@ -28,17 +30,17 @@ void main() {
     Gathered gathered[SURFACES];
     surfaces[0] = visible_surface(at, texelFetch(surface_depth, at, 0).r, vec3(0.0));
     gathered[0] = nothing_gathered();
-    uint end = min(vpl_constants.count, 2u * (part_first + part_size));
-    for (uint i = 2u * part_first + uint(at.x + at.y) % 2u; i < end; i += 2u) {
+    uint end = min(vpl_constants.count, one_in * (part_first + part_size));
+    for (uint i = one_in * part_first + uint(at.x + 3 * at.y) % one_in; i < end; i += one_in) {
 #ifdef SURFELS
-        // In the order of the buffer: neighbouring surfels have adjacent indices and so fall into different halves.
+        // In the order of the buffer: neighbouring surfels have adjacent indices and so are summed by different pixels.
         add_vpl(i, surfaces, gathered);
 #else
         add_vpl(vpl_order[i], surfaces, gathered);
 #endif
     }
     vec4 found = imageLoad(reconstructed, at);
-    float weight = 1.0 / (found.a + 0.5);  // the sum over half of the VPLs is half of the estimate
+    float weight = 1.0 / (found.a + 1.0 / float(one_in));  // the sum over a half is half of the estimate
     float kept = part_first == 0u ? found.a * weight : 1.0;
     imageStore(reconstructed, at, vec4(kept * found.rgb + weight * gathered[0].irradiance, found.a));
 #ifdef DIRECTED

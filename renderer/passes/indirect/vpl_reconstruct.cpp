@@ -91,17 +91,19 @@ BufferHandle<std::uint32_t> add_list(FrameGraph& graph, Gpu& gpu, const Columns&
 
 /// Evaluates in as many dispatches as needed for each to evaluate at most `most` VPLs per pixel. Each adds to
 /// the sum of the ones before.
-void fill(const Gpu& gpu, const gl::Program& program, std::uint32_t vpl_count, std::uint32_t most) {
+void fill(const Gpu& gpu, const gl::Program& program, std::uint32_t vpl_count, std::uint32_t one_in,
+          std::uint32_t most) {
     ComputeSteps steps(gpu);
-    for (const gl::Uniforms& part : loop_parts((vpl_count + 1) / 2, most)) {
-        steps.run_indirect(program, part);
+    for (const gl::Uniforms& part : loop_parts((vpl_count + one_in - 1) / one_in, most)) {
+        steps.run_indirect(program, part + gl::Uniforms{{"one_in", one_in}});
     }
 }
 
 GatheredLight add_fill(FrameGraph& graph, Gpu& gpu, const Pixels& pixels, const IndirectLight& found,
-                       BufferHandle<std::uint32_t> order, const VplLight& light) {
+                       BufferHandle<std::uint32_t> order, const VplLight& light, std::uint32_t one_in) {
     return graph.add("vpl-fill", [&](Pass& pass) {
         pass.tag(Workload::pixels);
+        pass.parameter(one_in);
         read_pixels(pass, pixels);
         pass.read(order, {Usage::storage, BINDING_VPL_ORDER});
         pass.read(found.fill_list, {Usage::storage, BINDING_FILL_LIST});
@@ -115,7 +117,8 @@ GatheredLight add_fill(FrameGraph& graph, Gpu& gpu, const Pixels& pixels, const 
             out.flow = pass.write(*found.light.flow, {Usage::storage, IMAGE_INDIRECT_DIRECTION});
         }
         pass.run([=, &gpu, &program](Execution& run) {
-            fill(gpu, program, run.value(light.vpls.counts).sources(), max_vpls_per_invocation(light));
+            fill(gpu, program, run.value(light.vpls.counts).sources(), one_in,
+                 max_vpls_per_invocation(light));
         });
         return out;
     });
@@ -130,12 +133,13 @@ GatheredLight add_rough_reconstruct(FrameGraph& graph, Gpu& gpu, const Surfaces&
 }
 
 IndirectLight add_vpl_reconstruct(FrameGraph& graph, Gpu& gpu, const Surfaces& surfaces,
-                                  const GatheredVpls& gathered, const VplLight& light, const ViewData& view) {
+                                  const GatheredVpls& gathered, const VplLight& light, const ViewData& view,
+                                  std::uint32_t filled_from) {
     const Pixels pixels{surfaces, view, gathered.interleave, view.size};
     const GatheredLight rows = add_rows(graph, gpu, pixels, gathered.light);
     const Columns columns = add_columns(graph, gpu, pixels, rows);
     IndirectLight found{columns.light, add_list(graph, gpu, columns, view.size)};
-    found.light = add_fill(graph, gpu, pixels, found, gathered.order, light);
+    found.light = add_fill(graph, gpu, pixels, found, gathered.order, light, filled_from);
     return found;
 }
 
