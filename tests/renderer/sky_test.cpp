@@ -9,6 +9,7 @@
 #include <numbers>
 
 #include "renderer/passes/sky/sky_patches.hpp"
+#include "renderer/passes/view/refinement.hpp"
 #include "tests/renderer/path_fixture.hpp"
 
 TEST_SUITE("sky") {
@@ -321,6 +322,22 @@ TEST_CASE_FIXTURE(SkyFixture, "light follows a sky that changes, turns or goes, 
     CHECK(mean(render(scene, size)) == 0.0);
     CHECK(renderer.describe(GraphFormat::text).find("sky") == std::string::npos);
     CHECK(renderer.describe(GraphFormat::text).find("background") == std::string::npos);
+}
+
+TEST_CASE_FIXTURE(SkyFixture, "light of the sky is computed again only when another sample of it is shown") {
+    Scene scene = ground();
+    add(scene.world, Environment{.radiance = glm::vec3(1.0F), .picture = one_texel(1e3F).picture});
+    Configuration configuration = small();
+    configuration.refinement = {.enabled = true, .frames = 64};
+    configure(configuration);
+    for (std::uint32_t set = 0; set < 2 * frames_a_surfel_set; ++set) {
+        CAPTURE(set);
+        static_cast<void>(render(scene, size));
+        for (const std::string_view pass : {"sky-patches", "surfel-light", "surfel-bounce"}) {
+            CAPTURE(pass);
+            CHECK(ran(pass) == (set % frames_a_surfel_set == 0));
+        }
+    }
 }
 
 TEST_CASE_FIXTURE(SkyFixture, "the flux of the sky is accounted for") {

@@ -17,8 +17,8 @@ struct SkyPatches {
     ValueHandle<std::uint32_t> count;
 };
 
-/// Adds node `sky-patches` (CPU, then upload): place_sky; with refinement, another sample every
-/// frames_a_surfel_set sets.
+/// Adds node `sky-patches` (CPU, then upload): place_sky; with refinement also node `sky-sample` (CPU), as
+/// every frames_a_surfel_set sets have another sample.
 [[nodiscard]] SkyPatches add_sky_patches(FrameGraph& graph, const Gpu& gpu, const Sky& sky,
                                          std::optional<ValueHandle<Refinement>> refinement);
 
