@@ -16,6 +16,7 @@ layout(std430, binding = BINDING_CELL_POINTS) readonly restrict buffer Points { 
 layout(std430, binding = BINDING_DIRECT_POINTS) restrict buffer DirectPoints { DirectPoint direct_points[]; };
 layout(std430, binding = BINDING_SURFELS) readonly restrict buffer Surfels { Surfel surfels[]; };
 
+uniform uint first_row;  // of work groups, in this dispatch: see ComputeSteps::run_rows
 uniform uint point_count;
 uniform uint light_count;
 uniform float ray_offset;    // metres; rays start above the surface and end before the light, which may lie on another
@@ -163,7 +164,7 @@ vec3 irradiance_from_sky(uint id, CellPoint point) { return vec3(0.0); }
 #endif
 
 void main() {
-    uint id = gl_GlobalInvocationID.x;
+    uint id = (first_row + gl_WorkGroupID.y) * SURFEL_GROUP + gl_LocalInvocationID.x;
     if (id >= point_count) return;
     CellPoint point = cell_points[id];
     Material material = materials[point.material];

@@ -132,7 +132,7 @@ DirectLight add_direct_light(FrameGraph& graph, Gpu& gpu, const Tracing& tracing
                 {"surfel_count", count}, {"emitting_count", emitters}, {"sky_patch_count", patches}};
             ComputeSteps steps(gpu);
             for (const gl::Uniforms& part : loop_parts(light_count, MOST_POINT_RAYS)) {
-                steps.run(lighter, {groups(points, SURFEL_GROUP)}, uniforms + part);
+                steps.run_rows(run, lighter, {1, groups(points, SURFEL_GROUP)}, uniforms + part);
             }
             steps.run(adder, {groups(count, SURFEL_GROUP)}, count_uniforms(count));
         });
