@@ -86,7 +86,7 @@ VplReport Renderer::State::report_vpls(const Vpls& vpls, const ViewHandles& view
     };
     const VplCounts& counts = runtime_.value(vpls.counts);
     VplReport report{.requested = configuration_.vpls.count,
-                     .waiting = waiting_,
+                     .waiting = schedule_.waiting(),
                      .interleave = view.interleave,
                      .filled_pixels = count_filled(view),
                      .flux = {},

@@ -186,12 +186,11 @@ void Renderer::State::install(Declared declared, const Configuration& configurat
     FrameShape shape_before = shape_;
     shape_before.turn = shape.turn;
     const bool same = shape == shape_before && same_radiance(configuration, configuration_);
-    if (!same || abandoned_) ++refinement_clock_.epoch;
+    schedule_.change_graph(same);
     configuration_ = configuration;
     shape_ = shape;
     extensions_ = std::move(extensions);
     surfaces_bound_ = false;
-    next_set_is_complete_ &= same && shape.turn.prepares_next;
     last_passes_.clear();
 }
 
@@ -272,7 +271,7 @@ void Renderer::State::set_surfaces(const HostSurfaceInputs& inputs, const HostSu
     const bool revised = surfaces.revision != 0 && now != last;
     const bool same = surfaces.revision != 0 && now == last;
     last = now;
-    if (revised) ++refinement_clock_.epoch;
+    if (revised) schedule_.restart();
     runtime_.set(inputs.description, surfaces);
     if (same && surfaces_bound_) return;
     runtime_.bind(inputs.depth, surfaces.depth, {});
@@ -298,48 +297,49 @@ bool Renderer::State::render(const World& world, std::span<const RenderView> vie
         requests.push_back({view.camera, view.target.size, view.jitter});
         without_jitter.push_back({view.camera, view.target.size});
     }
-    const bool moved = has_moved(world, std::move(requests));
-    shape.quality = quality_now(moved);
-    shape.turn = turn_now(!moved && shape.quality == Quality{});
+    schedule_.begin(world, std::move(requests), configuration_, budget_ms(configuration_));
+    shape.quality = schedule_.quality();
+    shape.turn = schedule_.turn();
     if (!compiled_ || shape != shape_) switch_to(configuration_, shape, extensions_);
     set_views(views);
-    // The mean starts over after a frame that threw, but not after one that was abandoned.
-    if (!std::exchange(completed_, false)) {
-        ++refinement_clock_.epoch;
-        refine_ = false;
-    }
-    set_refinement_clock();
+    if (frame_.refinement_clock) runtime_.set(*frame_.refinement_clock, schedule_.refinement_clock());
+    if (frame_.update_clock) runtime_.set(*frame_.update_clock, schedule_.update_clock());
     if (frame_.receivers) runtime_.set(*frame_.receivers, receivers_);
     if (frame_.epoch) runtime_.set(*frame_.epoch, epoch_);
-    set_update_clock();
     if (frame_.requests) runtime_.set(*frame_.requests, std::move(without_jitter));
 
     const auto start = std::chrono::steady_clock::now();
     const std::uint64_t index = next_frame_++;
+    bool complete = false;
     {
         const TimedFrame timed(backend_.timer(), index);
         const FrameRecord& record = runtime_.run(world, Timing::on, options.wanted);
         last_passes_ = record.passes;
-        abandoned_ = !record.complete;
+        complete = record.complete;
     }
     gpu_.log().tell_counts();
-    completed_ = true;
-    if (abandoned_) return false;
-    received_ = static_cast<std::uint32_t>(receivers_.size());
-    waiting_ = frame_.waiting ? runtime_.value(*frame_.waiting) : 0;
-    waits_ = waiting_ > 0 || (frame_.focus_state && runtime_.value(*frame_.focus_state).held);
-    refine_ = !waits_ && refines();
-    if (frame_.refinement) {
-        refined_set_ = runtime_.value(*frame_.refinement).set;
-        surfel_set_ = runtime_.value(*frame_.refinement).surfel_set;
+    if (!complete) {
+        schedule_.abandon();
+        return false;
     }
-    next_set_is_complete_ = frame_.waiting_of_next && runtime_.value(*frame_.waiting_of_next) == 0;
+    schedule_.complete(outcome());
+    received_ = static_cast<std::uint32_t>(receivers_.size());
     pending_.push_back({to_report(last_passes_, index, milliseconds_since(start)), quality(),
                         frame_.waiting_of_next.has_value()});
-    pending_.back().report.waiting_surfels = waiting_;
+    pending_.back().report.waiting_surfels = schedule_.waiting();
     match_times(backend_.timer().collect());
     if (runtime_.verifies()) runtime_.verify(world);
     return true;
+}
+
+FrameOutcome Renderer::State::outcome() const {
+    const auto value = [this](const auto& handle) { return runtime_.value(*handle); };
+    FrameOutcome outcome{.refines = refines()};
+    if (frame_.waiting) outcome.waiting = value(frame_.waiting);
+    outcome.waits = outcome.waiting > 0 || (frame_.focus_state && value(frame_.focus_state).held);
+    if (frame_.refinement) outcome.refinement = value(frame_.refinement);
+    if (frame_.waiting_of_next) outcome.waiting_of_next = value(frame_.waiting_of_next);
+    return outcome;
 }
 
 /// Whether another frame is to be added to the mean of a view.
@@ -411,37 +411,6 @@ double Renderer::State::budget_ms(const Configuration& configuration) const {
     return gpu_.device().is_software() ? on_software : on_hardware;
 }
 
-/// Whether anything has, since the last frame.
-bool Renderer::State::has_moved(const World& world, std::vector<ViewRequest> requests) {
-    const bool moved = world.revision() != last_revision_ || requests != last_requests_;
-    last_revision_ = world.revision();
-    last_requests_ = std::move(requests);
-    return moved;
-}
-
-/// Full quality, unless there is a frame budget and something moved within the last quarter of a second.
-Quality Renderer::State::quality_now(bool moved) {
-    constexpr std::chrono::milliseconds settled(250);
-    const Clock::time_point now = Clock::now();
-    if (moved) last_move_ = now;
-    if (budget_ms(configuration_) == 0.0 || now - last_move_ > settled) return {};
-    return moved ? quality_in_motion_ : shape_.quality;
-}
-
-/// While nothing moves, the next set of surfels is prepared, and follows when it is complete. `rests`:
-/// nothing has moved, and the quality is full.
-SurfelTurn Renderer::State::turn_now(bool rests) {
-    if (!takes_turns(configuration_)) return {};
-    if (refined_set_ < turn_begin_) turn_begin_ = 0;
-    const bool is_due = refined_set_ + 1 >= turn_begin_ + frames_a_surfel_set;
-    if (rests && refine_ && is_due && std::exchange(next_set_is_complete_, false)) {
-        ++surfel_set_;
-        turn_begin_ = refined_set_ + 1;
-    }
-    const bool goes_on = refine_ || (abandoned_ && shape_.turn.prepares_next);
-    return {.place = surfel_set_ % 2, .prepares_next = rests && goes_on};
-}
-
 FrameContents Renderer::State::contents_now(const World& world) {
     const std::array revisions{world.revision<MeshInstance>(), world.revision<Environment>()};
     const Tick transforms = world.revision<Transform>();
@@ -459,33 +428,15 @@ FrameContents Renderer::State::contents_now(const World& world) {
 
 void Renderer::State::learn_cost(const PendingFrame& frame) {
     if (frame.worked_ahead) return;
-    const FrameCost cost = cost_of(frame.report);
-    if (budget_ms(configuration_) > 0.0 && cost.pixels > 0.0) {
-        const std::uint32_t configured =
-            interleaving(configuration_.interleave, configuration_.vpls.count, shape_.views.front().target);
-        quality_in_motion_ = choose_quality(cost, frame.quality, configured, budget_ms(configuration_));
-    }
-}
-
-void Renderer::State::set_refinement_clock() {
-    refinement_clock_.round += std::exchange(refine_, false) ? 1 : 0;
-    refinement_clock_.surfel_set = takes_turns(configuration_) ? std::optional(surfel_set_) : std::nullopt;
-    if (frame_.refinement_clock) runtime_.set(*frame_.refinement_clock, refinement_clock_);
-}
-
-/// Asks for more of what waits.
-void Renderer::State::set_update_clock() {
-    if (!frame_.update_clock) return;
-    update_clock_.limit = configuration_.vpls.updates;
-    update_clock_.waits = waiting_ > 0;
-    if (std::exchange(waits_, false)) ++update_clock_.round;
-    runtime_.set(*frame_.update_clock, update_clock_);
+    const std::uint32_t configured =
+        interleaving(configuration_.interleave, configuration_.vpls.count, shape_.views.front().target);
+    schedule_.learn(cost_of(frame.report), frame.quality, configured, budget_ms(configuration_));
 }
 
 void Renderer::State::invalidate() {
     runtime_.invalidate();
     ++epoch_;
-    completed_ = false;
+    schedule_.invalidate();
 }
 
 void Renderer::State::match_times(const std::vector<gl::FrameTime>& times) {

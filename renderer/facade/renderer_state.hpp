@@ -1,7 +1,6 @@
 #pragma once
 
 #include <array>
-#include <chrono>
 #include <cstdint>
 #include <deque>
 #include <optional>
@@ -13,8 +12,8 @@
 #include <candela/graph/describe.hpp>
 #include <candela/graph/execute.hpp>
 #include <candela/renderer.hpp>
+#include "renderer/facade/frame_schedule.hpp"
 #include "renderer/frame/build_frame.hpp"
-#include "renderer/frame/frame_budget.hpp"
 #include "renderer/gl/graph_backend.hpp"
 #include "renderer/gpu/gpu.hpp"
 
@@ -46,14 +45,11 @@ class CANDELA_PRIVATE Renderer::State {
     [[nodiscard]] GraphDescription description() const;
     [[nodiscard]] std::string describe(GraphFormat format) const;
     [[nodiscard]] Quality quality() const { return {shape_.quality.scale, frame_.views.front().interleave}; }
-    [[nodiscard]] bool settled() const {
-        return completed_ && !abandoned_ && !waits_ && !refine_ && shape_.quality == Quality{};
-    }
+    [[nodiscard]] bool settled() const { return schedule_.settled(); }
     [[nodiscard]] const std::vector<PassRecord>& last_passes() const { return last_passes_; }
     [[nodiscard]] Gpu& gpu() { return gpu_; }
 
  private:
-    using Clock = std::chrono::steady_clock;
     /// A finished frame whose GPU times have not arrived yet.
     struct PendingFrame {
         FrameReport report;
@@ -97,12 +93,8 @@ class CANDELA_PRIVATE Renderer::State {
     [[nodiscard]] const ViewHandles& view_handles(std::size_t view) const;
     [[nodiscard]] FrameContents contents_now(const World& world);
     [[nodiscard]] double budget_ms(const Configuration& configuration) const;
-    [[nodiscard]] bool has_moved(const World& world, std::vector<ViewRequest> requests);
-    [[nodiscard]] Quality quality_now(bool moved);
-    [[nodiscard]] SurfelTurn turn_now(bool rests);
     void learn_cost(const PendingFrame& frame);
-    void set_refinement_clock();
-    void set_update_clock();
+    [[nodiscard]] FrameOutcome outcome() const;
     void match_times(const std::vector<gl::FrameTime>& times);
     [[nodiscard]] bool refines() const;
     [[nodiscard]] VplReport report_vpls(const Vpls& vpls, const ViewHandles& view) const;
@@ -125,24 +117,10 @@ class CANDELA_PRIVATE Renderer::State {
     bool contents_depend_on_transforms_ = false;
     std::vector<HostContent> host_contents_;  // by view
     bool surfaces_bound_ = false;  // the host's textures have been bound since the last `switch_to`
-    Quality quality_in_motion_;
-    std::vector<ViewRequest> last_requests_;
-    Tick last_revision_ = 0;  // the world's, in the last frame
-    Clock::time_point last_move_;
     FrameHandles frame_;
     std::uint64_t epoch_ = 0;  // incremented by `invalidate`: cached scene data is void
-    RefinementClock refinement_clock_;
-    std::uint32_t refined_set_ = 0;  // Refinement::set of the last frame
-    std::uint32_t surfel_set_ = 0;   // Refinement::surfel_set
-    std::uint32_t turn_begin_ = 0;   // Refinement::set when it took its turn, or 0 if the mean began later
-    bool next_set_is_complete_ = false;  // the set that the last frames have prepared
-    UpdateClock update_clock_;
-    std::uint32_t waiting_ = 0;   // surfels that wait for later frames
-    bool waits_ = false;          // whether any do, or others may have to be placed
-    bool refine_ = false;         // whether the next frame adds another sample to the mean
+    FrameSchedule schedule_;
     std::uint32_t received_ = 0;  // receivers in the last frame
-    bool completed_ = false;      // whether the last frame did not throw, nor was followed by `invalidate`
-    bool abandoned_ = false;      // the last frame was not wanted any more, and the next one goes on with it
     std::vector<PassRecord> last_passes_;
     std::uint64_t next_frame_ = 0;
     std::deque<PendingFrame> pending_;
