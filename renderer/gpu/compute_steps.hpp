@@ -21,8 +21,8 @@ class ComputeSteps {
 
     void run(const gl::Program& program, const Groups& groups, const gl::Uniforms& uniforms = {});
     /// The same in one dispatch, or if the frame may be given up, in several, of some rows of work groups (y)
-    /// each, between which the pass may end. The shader adds `first_row` to gl_WorkGroupID.y. No row depends on
-    /// another.
+    /// each, between which the pass may end. The shader adds `first_row` to gl_WorkGroupID.y. No row depends
+    /// on another.
     void run_rows(const Execution& run, const gl::Program& program, const Groups& groups,
                   const gl::Uniforms& uniforms);
     /// The numbers of groups are at `offset`, in bytes, in the buffer that the pass reads with

@@ -120,8 +120,8 @@ TEST_CASE_FIXTURE(AbandonedFrames, "the host is also asked between rows of block
         CHECK(renderer.render(scene.world, {&view, 1}, {.wanted = [&asked] { return ++asked > 0; }}));
         return asked - passes_run();
     };
-    // Deferred shading; so few VPLs are not gathered before. And the points of surfels, in five to eight parts,
-    // which are of as many groups of points each.
+    // Deferred shading; so few VPLs are not gathered before. And the points of surfels, in five to eight
+    // parts, which are of as many groups of points each.
     const int parts = count() - 3;
     CHECK(parts >= 5);
     CHECK(parts <= 8);

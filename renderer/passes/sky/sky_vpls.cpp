@@ -31,8 +31,8 @@ SkyPatches add_sky_patches(FrameGraph& graph, const Gpu& gpu, const Sky& sky,
                                                    Usage::copy),
                              .count = pass.write(graph.value<std::uint32_t>("sky patch count"))};
         pass.run([=, &gpu](Execution& run) {
-            const std::vector<gpu::SkyPatch> patches = place_sky(
-                run.value(sky.split), run.value(sky.environment), sample ? run.value(*sample) : 0);
+            const std::vector<gpu::SkyPatch> patches =
+                place_sky(run.value(sky.split), run.value(sky.environment), sample ? run.value(*sample) : 0);
             upload<gpu::SkyPatch>(gpu, run, out.patches, patches);
             run.set(out.count, static_cast<std::uint32_t>(patches.size()));
         });
