@@ -110,8 +110,8 @@ gpu::Shadow add_cube(ShadowPlan& plan, const gpu::Light& light, const ShadowShap
 }
 
 gpu::Shadow add_map(ShadowPlan& plan, const gpu::Light& light, const ShadowShape& shape, float ray_offset) {
-    const double margin =
-        1.0 + 4.0 / plan.resolution.map;  // two texels on each side, for the four around a receiver
+    // Two texels on each side, for the four around a receiver.
+    const double margin = 1.0 + 4.0 / plan.resolution.map;
     const MapProjection projection =
         shape.kind == SHADOW_PERSPECTIVE
             ? perspective(margin * shape.tangent, shape.near, shape.far)
@@ -277,7 +277,7 @@ std::optional<DepthTerms> depth_terms(const ShadowPlan& plan, bool cubes, std::u
 
 ShadowResolution shadow_resolution(const ShadowSettings& settings, float scale) {
     constexpr std::uint32_t least = 16;
-    const auto halvings = static_cast<std::uint32_t>(std::max(std::floor(-std::log2(scale)), 0.0F));
+    const auto halvings = static_cast<std::uint32_t>(std::clamp(std::floor(-std::log2(scale)), 0.0F, 16.0F));
     const auto reduced = [&](std::uint32_t resolution) {
         return std::max(resolution >> halvings, std::min(resolution, least));
     };
