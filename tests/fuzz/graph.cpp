@@ -3,8 +3,10 @@
 // refused with errors.
 
 #include <cstddef>
+#include <optional>
 #include <span>
 #include <string>
+#include <string_view>
 #include <variant>
 #include <vector>
 
@@ -72,7 +74,7 @@ class Declarer {
 
  private:
     void declare_step() {
-        switch (choices_(8)) {
+        switch (choices_(9)) {
             case 0:
                 handles_.emplace_back(graph_.texture(name("r"), texture(), lifetime()));
                 return;
@@ -88,6 +90,9 @@ class Declarer {
                 return;
             case 4:
                 graph_.append_to_names("'");
+                return;
+            case 5:
+                graph_.append_to_keys(choices_(2) == 0 ? std::optional<std::string_view>("*") : std::nullopt);
                 return;
             default:
                 graph_.add(name("p"), [this](Pass& pass) { declare_pass(pass); });
