@@ -15,7 +15,7 @@ layout(std430, binding = BINDING_FILL_LIST) readonly restrict buffer FillList {
     uint fill_pixels[];
 };
 
-uniform uint one_in;  // a power of two
+uniform uint one_in;  // 2 or 4
 
 layout(rgba32f, binding = IMAGE_INDIRECT) restrict uniform image2D reconstructed;
 #ifdef DIRECTED
@@ -30,8 +30,10 @@ void main() {
     Gathered gathered[SURFACES];
     surfaces[0] = visible_surface(at, texelFetch(surface_depth, at, 0).r, vec3(0.0));
     gathered[0] = nothing_gathered();
+    // The four pixels of 2 × 2 sum different quarters, or halves as on a chessboard: no stripes are seen.
+    uint offset = uint(2 * ((at.x ^ at.y) & 1) + (at.y & 1)) * one_in / 4u;
     uint end = min(vpl_constants.count, one_in * (part_first + part_size));
-    for (uint i = one_in * part_first + uint(at.x + 3 * at.y) % one_in; i < end; i += one_in) {
+    for (uint i = one_in * part_first + offset; i < end; i += one_in) {
 #ifdef SURFELS
         // In the order of the buffer: neighbouring surfels have adjacent indices and so are summed by different pixels.
         add_vpl(i, surfaces, gathered);

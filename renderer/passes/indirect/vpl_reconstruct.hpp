@@ -24,7 +24,7 @@ struct IndirectLight {
 /// nodes `vpl-reconstruct-rows` and `vpl-reconstruct` (compute): separable filters along rows, then along
 /// columns. Each class of pixels counts once, interpolated linearly between its nearest pixels that lie on
 /// the same surface. Adds nodes `vpl-fill-list` and `vpl-fill` (compute): pixels for which too few classes
-/// have such pixels are listed, and sum one in `filled_from` (a power of two) of the VPLs themselves. They
+/// have such pixels are listed, and sum one in `filled_from` (2 or 4) of the VPLs themselves. They
 /// depend on depth and normal of the surfaces, the gathered light, the VPLs and the view.
 [[nodiscard]] IndirectLight add_vpl_reconstruct(FrameGraph& graph, Gpu& gpu, const Surfaces& surfaces,
                                                 const GatheredVpls& gathered, const VplLight& light,
