@@ -56,7 +56,7 @@ class FrameSchedule {
     [[nodiscard]] bool settled() const {
         return is_complete_ && !abandoned_ && !waits_ && !refines_ && quality_ == Quality{};
     }
-    /// After the last frame; surfels.
+    /// Surfels that waited to be traced after the last complete frame.
     [[nodiscard]] std::uint32_t waiting() const { return waiting_; }
 
  private:

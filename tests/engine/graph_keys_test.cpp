@@ -17,7 +17,6 @@ struct TurnFixture : GraphFixture {
     /// Switches to a graph in which that of `place` is shown.
     void show(int place) {
         graph = FrameGraph();
-        graph.append_to_names("");
         const ValueHandle<int> shown = make(place);
         graph.append_to_names(" (next)");
         const ValueHandle<int> next = make(1 - place);
