@@ -91,6 +91,8 @@
 // Passes that shade read no picture.
 #define UNIT_GLOSS UNIT_RADIANCE
 #define UNIT_MIRROR_SHARES UNIT_MEAN
+// Passes that draw blended surfaces read nothing that mirrors have found.
+#define UNIT_PART UNIT_MIRRORED_ALBEDO
 // Passes that show what mirrors have found light nothing.
 #define UNIT_SKY_TREE UNIT_VPL_MAPS
 #define UNIT_MIRRORED_PLACE UNIT_SHADOW_CUBES
@@ -124,8 +126,6 @@
 #define TONE_CURVE_ACES 3u
 
 #define BVH_STACK_SIZE 145
-
-#define MOST_SHADOW_RAYS 32  // that an invocation casts in a dispatch or draw: shadow.glsl
 
 #define PIXEL_BLOCK 16      // pixels along an edge of the block that a work group shades: pixel_block.glsl
 #define RECONSTRUCT_GROUP 64  // pixels of a row that a work group reconstructs

@@ -408,7 +408,7 @@ double Renderer::State::budget_ms(const Configuration& configuration) const {
     constexpr double on_hardware = 16.0;
     constexpr double on_software = 60.0;
     if (configuration.frame_budget_ms) return static_cast<double>(*configuration.frame_budget_ms);
-    return gpu_.device().is_software() ? on_software : on_hardware;
+    return gpu_.device().limits().software ? on_software : on_hardware;
 }
 
 FrameContents Renderer::State::contents_now(const World& world) {

@@ -378,8 +378,9 @@ void build_view(FrameGraph& graph, Gpu& gpu, const SharedFrame& shared, const Vi
                                   shared.quality.interleave);
     }
     // VPLs are also gathered without interleaving if they are too many for one loop of the shading pass.
-    const bool gathers = shared.vpls && (out.interleave > 1 || asked.indirect ||
-                                         shared.vpls->count > max_vpls_per_invocation(shared.vpls->light));
+    const bool gathers =
+        shared.vpls && (out.interleave > 1 || asked.indirect ||
+                        shared.vpls->count > vpls_a_loop(gpu.device().limits(), shared.vpls->light));
     const bool estimates = shape.estimate_error && shared.vpls && shared.vpls->other;
     asked.depth |= gathers || estimates;
     const bool mirrors = shows_mirrors(shared, out);

@@ -48,8 +48,16 @@ std::vector<std::string> get_extensions(const Functions& gl) {
     return names;
 }
 
-Limits get_limits(const Functions& gl, bool anisotropic) {
+/// Whether a GL_RENDERER is one of the drivers that render on the CPU.
+bool is_software(std::string_view renderer) {
+    constexpr std::array<std::string_view, 4> names{"llvmpipe", "softpipe", "SWR", "Software"};
+    return std::ranges::any_of(names, [&](auto name) { return renderer.find(name) != renderer.npos; });
+}
+
+Limits get_limits(const Functions& gl, std::string_view renderer, bool anisotropic) {
     Limits limits;
+    limits.software = is_software(renderer);
+    if (limits.software) limits.loop_iterations = 65'535;  // Mesa's LP_MAX_TGSI_LOOP_ITERATIONS
     limits.texture_size = get_unsigned(gl, GL_MAX_TEXTURE_SIZE);
     limits.texture_layers = get_unsigned(gl, GL_MAX_ARRAY_TEXTURE_LAYERS);
     limits.storage_blocks = std::min({get_unsigned(gl, GL_MAX_COMPUTE_SHADER_STORAGE_BLOCKS),
@@ -89,19 +97,15 @@ Device::Device(const GetProc& get_proc, DebugOutput debug_output, DebugReceiver 
       renderer_(get_string(functions_.GetString, GL_RENDERER)),
       version_(get_string(functions_.GetString, GL_VERSION)),
       extensions_(get_extensions(functions_)),
-      limits_(get_limits(functions_, has_extension("GL_ARB_texture_filter_anisotropic") ||
-                                         has_extension("GL_EXT_texture_filter_anisotropic"))) {
+      limits_(get_limits(functions_, renderer_,
+                         has_extension("GL_ARB_texture_filter_anisotropic") ||
+                             has_extension("GL_EXT_texture_filter_anisotropic"))) {
     functions_.MaxShaderCompilerThreadsKHR = find_compiler_threads(get_proc, *this);
     if (debug_output == DebugOutput::on) log_.emplace(functions_, std::move(receiver));
 }
 
 std::vector<DebugMessage> Device::take_messages() {
     return log_ ? log_->take() : std::vector<DebugMessage>();
-}
-
-bool Device::is_software() const {
-    constexpr std::array<std::string_view, 4> names{"llvmpipe", "softpipe", "SWR", "Software"};
-    return std::ranges::any_of(names, [&](auto name) { return renderer_.find(name) != std::string::npos; });
 }
 
 bool Device::has_extension(std::string_view name) const {

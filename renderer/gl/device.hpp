@@ -3,6 +3,7 @@
 #include <array>
 #include <cstddef>
 #include <cstdint>
+#include <limits>
 #include <optional>
 #include <string>
 #include <string_view>
@@ -41,6 +42,10 @@ struct Limits {
     std::uint32_t texture_units = 0;           ///< of a shader stage
     std::int32_t debug_groups = 0;  ///< depth of the stack of debug groups, the default group included
     float anisotropy = 1.0F;        ///< largest degree; 1: no anisotropic filtering
+    bool software = false;          ///< the driver renders on the CPU
+    /// Iterations of all loops of an invocation together after which the driver silently stops them. The
+    /// largest value: it never does.
+    std::uint32_t loop_iterations = std::numeric_limits<std::uint32_t>::max();
 };
 
 /// Whether a device turns on the debug output of its context: see DebugLog. If off, it neither reads nor
@@ -62,10 +67,11 @@ class Device {
 
     [[nodiscard]] const Functions& gl() const { return functions_; }
     [[nodiscard]] const Limits& limits() const { return limits_; }
+    /// For tests: as if the driver had these limits, for all passes that are declared from now on.
+    void pretend(const Limits& limits) { limits_ = limits; }
     [[nodiscard]] const std::string& vendor() const { return vendor_; }      ///< GL_VENDOR
     [[nodiscard]] const std::string& renderer() const { return renderer_; }  ///< GL_RENDERER
     [[nodiscard]] const std::string& version() const { return version_; }    ///< GL_VERSION
-    [[nodiscard]] bool is_software() const;  ///< whether the driver renders on the CPU
     [[nodiscard]] bool has_extension(std::string_view name) const;
 
     /// The driver's messages since the last call, oldest first: see DebugLog::take. None without debug

@@ -61,13 +61,7 @@ bool is_blocked(Shadow shadow, vec3 origin, Light light) {
     return any_hit(origin, direction, 0.0, end);
 }
 
-// Rays that the invocation may still cast: software drivers stop long loops (see max_vpls_per_invocation in
-// renderer/passes/indirect/vpl_light.hpp). lighting_parts sees to it that they suffice for up to 512 lights, except
-// on blended surfaces.
-int shadow_rays_left = MOST_SHADOW_RAYS;
-
-// Share of the light lights[index] that reaches the surface, which must face it. It is neither 0 nor 1 only
-// where the rays are used up.
+// Share of the light lights[index] that reaches the surface, which must face it: 0 or 1.
 float shadow_visibility(uint index, Light light, Surface surface) {
     Shadow shadow = shadows[index];
     if (shadow.kind == SHADOW_NONE) return 1.0;
@@ -76,8 +70,7 @@ float shadow_visibility(uint index, Light light, Surface surface) {
     bool cube = shadow.kind == SHADOW_CUBE;
     if (cube) shadow = shadows[shadow.layer + cube_face(origin - light.position)];
     float visibility = mapped_visibility(shadow, cube, origin, normal, light.position);
-    if (visibility != UNKNOWN || shadow_rays_left == 0) return visibility;
-    --shadow_rays_left;
+    if (visibility != UNKNOWN) return visibility;
     return is_blocked(shadow, origin, light) ? 0.0 : 1.0;
 }
 

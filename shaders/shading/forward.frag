@@ -68,7 +68,7 @@ void main() {
 #ifdef BLENDED
     vec3 emitted = vec3(0.0);
 #ifdef EMISSION
-    emitted = fragment_emission();
+    if (part_first == 0u) emitted = fragment_emission();
 #endif
 #if defined(GLOSSY) && !defined(SHOW_SURFACES)
     reflected[0] += alpha * emitted;

@@ -1,9 +1,10 @@
 // The pixels of a work group and its invocations, for compute shaders that shade. A work group shades a block of
-// 16 × 16 pixels. An invocation shades four of them, 8 apart, so that it fetches each light once for four pixels. With
-// shadow rays to VPLs, whose cost exceeds that of any fetch, it shades one.
+// 16 × 16 pixels. On the CPU, an invocation shades four of them, 8 apart, so that it fetches each light once for four
+// pixels. With shadow rays to VPLs, whose cost exceeds that of any fetch, it shades one (ONE_SURFACE), and on GPUs, where
+// it needs half as many registers then.
 #include "bindings.glsl"
 
-#ifdef VPL_VISIBILITY_RAYS
+#if defined(VPL_VISIBILITY_RAYS) || defined(ONE_SURFACE)
 #define SURFACES 1
 #define GROUP_SIDE PIXEL_BLOCK
 #else

@@ -113,9 +113,8 @@ TEST_CASE_FIXTURE(BoundedWork, "every path shades with all lights, however long 
     check_lights(16.0F);
 }
 
-TEST_CASE_FIXTURE(BoundedWork,
-                  "with blended surfaces up to 16,384 lights are possible, and more are an error") {
-    constexpr std::uint32_t most = 16'384;
+TEST_CASE_FIXTURE(BoundedWork, "blended surfaces, which no two draws can shade in turn, have all lights") {
+    constexpr std::uint32_t most = 40'000;
     constexpr float range = std::numeric_limits<float>::infinity();
     const auto behind_a_pane = [&](Scene scene) {
         Material pane;
@@ -131,10 +130,8 @@ TEST_CASE_FIXTURE(BoundedWork,
     }
     const Picture whole = picture(behind_a_pane(lit_ground(0, most, range)), direct_only());
     CHECK(mean(whole) > 0.01);
-    CHECK(worst_error(whole, sum(parts), 1e-12) < 1e-3);  // 16,384 roundings of at most 2⁻²⁵ of the sum each
-    renderer.invalidate();
-    CHECK_THROWS_WITH_AS(static_cast<void>(render(behind_a_pane(lit_ground(0, most + 1, range)), size)),
-                         "16385 lights: where there are blended surfaces, 16384 are possible", gl::GlError);
+    // 40,000 roundings of at most 2⁻²⁵ of the sum each.
+    CHECK(worst_error(whole, sum(parts), 1e-12) < 1.3e-3);
 }
 
 TEST_CASE_FIXTURE(BoundedWork,

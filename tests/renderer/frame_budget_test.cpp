@@ -1,6 +1,7 @@
 // How the quality of frames is chosen under a time budget, and the pictures that result.
 
 #include "renderer/frame/frame_budget.hpp"
+#include "renderer/facade/device_of.hpp"
 #include "renderer/passes/lights/shadow_maps.hpp"
 
 #include <doctest/doctest.h>
@@ -278,8 +279,9 @@ TEST_CASE_FIXTURE(FrameBudgetTests, "the passes whose work grows with the pixels
             }
         }
     }
-    // Each pass of a view that draws or dispatches was there, besides those that cover the target.
-    CHECK(of_pixels.size() == 18);
+    // Each pass of a view that draws or dispatches was there, besides those that cover the target. One,
+    // `transparent-parts`, is only there on software drivers.
+    CHECK(of_pixels.size() == (device_of(renderer).limits().software ? 19 : 18));
 }
 
 TEST_CASE("the predicted time scales with the pixels, and with the VPLs per pixel") {

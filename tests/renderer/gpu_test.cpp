@@ -37,12 +37,15 @@ constexpr std::array<gl::EmbeddedShader, 2> files{
 
 }  // namespace
 
-TEST_CASE("a loop is cut into parts of at most a size, at least one") {
-    CHECK(loop_parts(0, 8).size() == 1);
-    CHECK(loop_parts(8, 8).size() == 1);
-    CHECK(loop_parts(9, 8).size() == 2);
+TEST_CASE("a loop is cut into parts that a driver runs through, at least one") {
+    const gl::Limits of_80{.loop_iterations = 80};
+    CHECK(loop_parts(of_80, 0, 10).size() == 1);
+    CHECK(loop_parts(of_80, 8, 10).size() == 1);
+    CHECK(loop_parts(of_80, 9, 10).size() == 2);
+    CHECK(loop_parts(of_80, 9, 100).size() == 9);  // an iteration cannot be cut
+    CHECK(loop_parts({}, 1'000'000, 1'000'000).size() == 1);
     std::vector<std::uint32_t> starts;
-    for (const gl::Uniforms& part : loop_parts(20, 8)) {
+    for (const gl::Uniforms& part : loop_parts(of_80, 20, 10)) {
         starts.push_back(std::get<std::uint32_t>(part.begin()->value));
     }
     CHECK(starts == std::vector<std::uint32_t>{0, 8, 16});
@@ -55,7 +58,7 @@ TEST_CASE_FIXTURE(GlFixture, "each step of a computation sees what those before 
     constexpr std::uint32_t count = 1000;
     ComputeSteps steps(gpu);
     std::uint32_t written = 0;
-    for (const gl::Uniforms& part : loop_parts(count, 300)) {
+    for (const gl::Uniforms& part : loop_parts({.loop_iterations = 300}, count, 1)) {
         steps.run(gpu.programs().compiled({"sum.comp"}, {}), {},
                   part + gl::Uniforms{{"count", count}, {"written", written}});
         written = 1 - written;

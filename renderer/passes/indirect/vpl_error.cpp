@@ -31,7 +31,8 @@ VplSamples add_samples(FrameGraph& graph, Gpu& gpu, std::string_view name, std::
             ComputeSteps steps(gpu);
             const Groups all{groups(SAMPLE_COLUMNS * SAMPLE_ROWS, SAMPLE_GROUP)};
             const std::uint32_t count = run.value(light.vpls.counts).sources();
-            for (const gl::Uniforms& part : loop_parts(count, max_vpls_per_invocation(light))) {
+            for (const gl::Uniforms& part :
+                 loop_parts(gpu.device().limits(), count, iterations_a_vpl(light))) {
                 steps.run(program, all, part);
             }
         });

@@ -21,15 +21,15 @@ constexpr std::uint32_t least_share = 8;
 // change.
 constexpr std::uint32_t least_rows = 60;
 
-/// Gathers in as many dispatches as needed for each to evaluate at most `most` VPLs per pixel. Each adds to
-/// the sum of the ones before.
+/// Gathers in the dispatches of loop_parts, with `inner` iterations a VPL. Each adds to the sum of the ones
+/// before.
 void gather(const Gpu& gpu, const Execution& run, const gl::Program& program, glm::uvec2 size,
-            std::uint32_t interleave, std::uint32_t vpl_count, std::uint32_t most) {
+            std::uint32_t interleave, std::uint32_t vpl_count, std::uint32_t inner) {
     const glm::uvec2 of_class = (size + interleave - 1U) / interleave;
     const std::uint32_t classes = interleave * interleave;
     const Groups blocks{groups(of_class.x, PIXEL_BLOCK), groups(of_class.y, PIXEL_BLOCK), classes};
     ComputeSteps steps(gpu);
-    for (const gl::Uniforms& part : loop_parts(groups(vpl_count, classes), most)) {
+    for (const gl::Uniforms& part : loop_parts(gpu.device().limits(), groups(vpl_count, classes), inner)) {
         steps.run_rows(run, program, blocks, part + gl::Uniforms{{"interleave", interleave}});
     }
 }
@@ -140,12 +140,13 @@ GatheredVpls add_vpl_gather(FrameGraph& graph, Gpu& gpu, const Surfaces& surface
         const GatheredVpls out{.light = write_gathered(graph, pass, "gathered", view.size, directed),
                                .order = order,
                                .interleave = interleave};
-        const gl::Program& program =
-            gpu.program({"indirect/vpl_gather.comp"},
-                        gathered_variant(out.light, surface_variant(surfaces, vpl_light_variant(light))));
+        const gl::Program& program = gpu.program(
+            {"indirect/vpl_gather.comp"},
+            gathered_variant(out.light,
+                             block_variant(gpu.device().limits(), surfaces, vpl_light_variant(light))));
         pass.run([=, &gpu, &program](Execution& run) {
             gather(gpu, run, program, view.size, interleave, run.value(light.vpls.counts).sources(),
-                   max_vpls_per_invocation(light));
+                   iterations_a_vpl(light));
         });
         return out;
     });

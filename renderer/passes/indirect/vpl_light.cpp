@@ -2,6 +2,7 @@
 
 #include <algorithm>
 
+#include "renderer/gpu/loop_parts.hpp"
 #include "renderer/passes/surfels/surfel_placement.hpp"
 
 namespace candela {
@@ -14,23 +15,28 @@ std::uint32_t group_size_of(const VplLight& light) {
     return lit != nullptr ? lit->group_size : 1;
 }
 
-std::uint32_t max_single(const VplLight& light) {
+std::uint32_t iterations_of_single(const VplLight& light) {
     if (light.rays) {
-        return light.maps ? 512 : 64;  // few need rays: see emitting_surfels
+        return light.maps ? iterations_a_ray / 16
+                          : iterations_a_ray / 2;  // few need rays: see emitting_surfels
     }
-    return std::holds_alternative<LitSurfels>(light.vpls.records) ? 2048 : 8192;
+    return std::holds_alternative<LitSurfels>(light.vpls.records) ? 31 : 7;
 }
 
 }  // namespace
 
-std::uint32_t max_vpls_per_invocation(const VplLight& light) {
+std::uint32_t iterations_a_vpl(const VplLight& light) {
     const std::uint32_t size = group_size_of(light);
-    if (size == 1) return max_single(light);
+    const std::uint32_t single = iterations_of_single(light);
+    if (size == 1) return single;
     // Of all groups, less than a quarter are so near that their surfels are summed one by one, and of all
     // surfels less than a quarter so near that each of their points is.
-    if (light.rays && !light.maps) return std::max(max_single(light) / (1 + size / 4), 1U);
-    const std::uint32_t iterations = 1 + size + size * points_a_surfel / 4;
-    return std::clamp(40'000 / iterations, 1U, max_single(light));
+    if (light.rays && !light.maps) return (1 + size / 4) * single;
+    return std::max((1 + size + size * points_a_surfel / 4) * 13 / 8, single);
+}
+
+std::uint32_t vpls_a_loop(const gl::Limits& limits, const VplLight& light) {
+    return std::max(limits.loop_iterations / iterations_a_vpl(light), 1U);
 }
 
 std::vector<std::string> vpl_light_variant(const VplLight& light) {

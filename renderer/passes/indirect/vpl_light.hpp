@@ -20,10 +20,10 @@ struct VplLight {
     std::optional<Tracing> rays{};        ///< BVH for shadow rays: of all VPLs, or of those without a map
 };
 
-/// Most VPLs, or groups of surfels, that an invocation may sum in one dispatch or draw. Software drivers
-/// silently stop all loops of an invocation after 65,535 iterations in total; a ray may take a thousand of
-/// them.
-[[nodiscard]] std::uint32_t max_vpls_per_invocation(const VplLight& light);
+/// Iterations of loops that a VPL, or a group of surfels, takes at most in vpl_light.glsl: see loop_parts.
+[[nodiscard]] std::uint32_t iterations_a_vpl(const VplLight& light);
+/// Most of them that an invocation can sum in one dispatch or draw.
+[[nodiscard]] std::uint32_t vpls_a_loop(const gl::Limits& limits, const VplLight& light);
 
 /// Names to define in shaders that include vpl_light.glsl.
 [[nodiscard]] std::vector<std::string> vpl_light_variant(const VplLight& light);

@@ -89,12 +89,13 @@ BufferHandle<std::uint32_t> add_list(FrameGraph& graph, Gpu& gpu, const Columns&
     });
 }
 
-/// Evaluates in as many dispatches as needed for each to evaluate at most `most` VPLs per pixel. Each adds to
-/// the sum of the ones before.
+/// Evaluates VPLs in the dispatches of loop_parts, with `inner` iterations a VPL. Each adds to the sum of the
+/// ones before.
 void fill(const Gpu& gpu, const gl::Program& program, std::uint32_t vpl_count, std::uint32_t one_in,
-          std::uint32_t most) {
+          std::uint32_t inner) {
     ComputeSteps steps(gpu);
-    for (const gl::Uniforms& part : loop_parts((vpl_count + one_in - 1) / one_in, most)) {
+    for (const gl::Uniforms& part :
+         loop_parts(gpu.device().limits(), (vpl_count + one_in - 1) / one_in, inner)) {
         steps.run_indirect(program, part + gl::Uniforms{{"one_in", one_in}});
     }
 }
@@ -117,8 +118,7 @@ GatheredLight add_fill(FrameGraph& graph, Gpu& gpu, const Pixels& pixels, const 
             out.flow = pass.write(*found.light.flow, {Usage::storage, IMAGE_INDIRECT_DIRECTION});
         }
         pass.run([=, &gpu, &program](Execution& run) {
-            fill(gpu, program, run.value(light.vpls.counts).sources(), one_in,
-                 max_vpls_per_invocation(light));
+            fill(gpu, program, run.value(light.vpls.counts).sources(), one_in, iterations_a_vpl(light));
         });
         return out;
     });

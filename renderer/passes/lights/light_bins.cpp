@@ -129,6 +129,14 @@ std::vector<bool> choose_global(const LightTable& lights, const std::vector<Cell
 
 }  // namespace
 
+std::uint32_t LightBins::longest() const {
+    std::uint32_t own = 0;
+    for (std::size_t cell = 0; cell + 1 < first.size(); ++cell) {
+        own = std::max(own, first[cell + 1] - first[cell]);
+    }
+    return global_count + own;
+}
+
 LightBins bin_lights(const LightTable& lights, const CameraView& view, const CellGrid& grid) {
     LightBins bins{.grid = grid, .first = {}, .entries = {}, .global_count = 0};
     std::vector<CellRange> ranges;

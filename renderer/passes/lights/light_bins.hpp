@@ -36,6 +36,9 @@ struct LightBins {
     std::vector<std::uint32_t> entries;
     std::uint32_t global_count = 0;  ///< entries [0, global_count) are the global lights
     bool operator==(const LightBins&) const = default;
+
+    /// Entries of the longest list, the global ones included.
+    [[nodiscard]] std::uint32_t longest() const;
 };
 
 /// The same on the GPU, as input of the exact tests.

@@ -79,15 +79,10 @@ BinBuffers add_light_bins(FrameGraph& graph, const Gpu& gpu, std::string_view na
         graph, gpu, name, inputs, [](Pass&) {}, [](Execution&) { return true; });
 }
 
-/// Culls in as many dispatches as needed to bound the loop of each invocation: see `loop_parts`.
+/// Culls in the dispatches of loop_parts.
 void cull(const Gpu& gpu, const gl::Program& program, const LightBins& bins, const gl::Uniforms& uniforms) {
-    constexpr std::uint32_t most = 32768;
-    std::uint32_t longest = 0;
-    for (std::size_t cell = 0; cell + 1 < bins.first.size(); ++cell) {
-        longest = std::max(longest, bins.first[cell + 1] - bins.first[cell]);
-    }
     ComputeSteps steps(gpu);
-    for (const gl::Uniforms& part : loop_parts(longest, most)) {
+    for (const gl::Uniforms& part : loop_parts(gpu.device().limits(), bins.longest(), 2)) {
         steps.run(program, {groups(bins.grid.cells(), cells_a_group)}, uniforms + part);
     }
 }
@@ -206,6 +201,7 @@ LightLists add_light_clusters(FrameGraph& graph, Gpu& gpu, const ListInputs& inp
 
 void read_light_lists(Pass& pass, const LightLists& lists) {
     read_light_grid(pass, lists.inputs.grid);
+    pass.read(lists.bins);
     pass.read(lists.first, {Usage::storage, BINDING_LIST_FIRST});
     pass.read(lists.count, {Usage::storage, BINDING_LIST_COUNT});
     pass.read(lists.entries, {Usage::storage, BINDING_LIST_ENTRIES});

@@ -19,8 +19,8 @@ PointLighting make_point_lighting(const Gpu& gpu, const Lighting& lighting) {
 }
 
 std::string PointLighting::glsl() const {
-    return parts_->gpu->programs().source_part("receivers/point_lighting.glsl",
-                                               lighting_variant(parts_->lighting));
+    return parts_->gpu->programs().source_part(
+        "receivers/point_lighting.glsl", lighting_variant(parts_->gpu->device().limits(), parts_->lighting));
 }
 
 void PointLighting::read(Pass& pass) const {

@@ -27,14 +27,14 @@ BufferHandle<gpu::LightReceiver> add_upload(FrameGraph& graph, Gpu& gpu,
 }
 
 /// The dispatches that sum the lights, then those that add the VPLs.
-std::vector<gl::Uniforms> parts_of(const Execution& run, const Lighting& lighting) {
+std::vector<gl::Uniforms> parts_of(const gl::Limits& limits, const Execution& run, const Lighting& lighting) {
     std::vector<gl::Uniforms> parts;
-    for (const gl::Uniforms& part : lighting_parts(run, lighting)) {
+    for (const gl::Uniforms& part : lighting_parts(limits, run, lighting, 1)) {
         parts.push_back(part + gl::Uniforms{{"adds_lights", true}});
     }
     if (!lighting.vpls) return parts;
     const std::uint32_t vpls = run.value(lighting.vpls->vpls.counts).sources();
-    for (const gl::Uniforms& part : loop_parts(vpls, max_vpls_per_invocation(*lighting.vpls))) {
+    for (const gl::Uniforms& part : loop_parts(limits, vpls, iterations_a_vpl(*lighting.vpls))) {
         parts.push_back(part + gl::Uniforms{{"adds_lights", false}});
     }
     return parts;
@@ -52,12 +52,12 @@ ReceivedLight add_receivers(FrameGraph& graph, Gpu& gpu, ValueHandle<std::vector
         const auto received = pass.write(growing_buffer<glm::vec4>(graph, "received light"),
                                          {Usage::storage, BINDING_RECEIVED});
         const gl::Program& program =
-            gpu.program({"receivers/receiver_light.comp"}, lighting_variant(lighting));
+            gpu.program({"receivers/receiver_light.comp"}, lighting_variant(gpu.device().limits(), lighting));
         pass.run([=, &gpu, &program](Execution& run) {
             const auto count = static_cast<std::uint32_t>(run.value(receivers).size());
             run.reserve(received, count);
             ComputeSteps steps(gpu);
-            for (const gl::Uniforms& part : parts_of(run, lighting)) {
+            for (const gl::Uniforms& part : parts_of(gpu.device().limits(), run, lighting)) {
                 steps.run(program, {groups(count, RECEIVER_GROUP)},
                           part + gl::Uniforms{{"receiver_count", count}});
             }

@@ -13,8 +13,8 @@ ForwardResults add_forward(FrameGraph& graph, Gpu& gpu, const SceneData& scene, 
         read_meshes(pass, scene);
         read_lighting(pass, lighting);
         read_view(pass, view);
-        const SurfacePrograms programs =
-            surface_programs(gpu, scene, "shading/forward.frag", lighting_variant(lighting));
+        const SurfacePrograms programs = surface_programs(gpu, scene, "shading/forward.frag",
+                                                          lighting_variant(gpu.device().limits(), lighting));
         ForwardResults out{.surfaces = surfaces,
                            .radiance = pass.write(graph.texture("radiance", {view.size, Format::rgba32f}),
                                                   Usage::colour_target)};
@@ -31,7 +31,7 @@ ForwardResults add_forward(FrameGraph& graph, Gpu& gpu, const SceneData& scene, 
             }
             bind_lighting(gpu, lighting);
             gl::RasterState state = after_prepass ? visible_surfaces : nearest_surfaces;
-            for (const gl::Uniforms& part : lighting_parts(run, lighting)) {
+            for (const gl::Uniforms& part : lighting_parts(gpu.device().limits(), run, lighting, 1)) {
                 draw_surfaces(gpu, run, scene, programs, state, part);
                 state = visible_surfaces_again;
             }

@@ -13,21 +13,27 @@ namespace candela {
 
 namespace {
 
-std::uint32_t light_count(const LightTable& lights) {
-    return static_cast<std::uint32_t>(lights.entries.size());
+/// Iterations that a light takes on a surface where no ray is traced: a driver without branches runs through
+/// each of a ray's loops once nevertheless.
+constexpr std::uint32_t iterations_without_ray = 7;
+
+/// Entries of the longest list that a surface may have.
+std::uint32_t longest_list(const Execution& run, const Lighting& lighting) {
+    if (lighting.lists) return run.value(lighting.lists->bins).longest();
+    return static_cast<std::uint32_t>(run.value(lighting.lights.table).entries.size());
 }
 
 }  // namespace
 
-std::vector<std::string> lighting_variant(const Lighting& lighting) {
+std::vector<std::string> lighting_variant(const gl::Limits& limits, const Lighting& lighting) {
     std::vector<std::string> words =
         lighting.vpls ? vpl_light_variant(*lighting.vpls) : std::vector<std::string>{};
     if (lighting.indirect) {
         words.emplace_back("INDIRECT_IRRADIANCE");
     } else if (lighting.vpls) {
         words.emplace_back("VPLS");
-        words.push_back(fmt::format("MOST_VPLS={}",
-                                    std::min(max_vpls_per_invocation(*lighting.vpls), lighting.most_vpls)));
+        words.push_back(
+            fmt::format("MOST_VPLS={}", std::min(vpls_a_loop(limits, *lighting.vpls), lighting.most_vpls)));
     }
     if (!shows_direct(lighting.show)) words.emplace_back("DIRECT_HIDDEN");
     if (lighting.show == Show::irradiance) {
@@ -71,14 +77,15 @@ void read_lighting(Pass& pass, const Lighting& lighting) {
     if (lighting.lists) read_light_lists(pass, *lighting.lists);
 }
 
-std::vector<gl::Uniforms> lighting_parts(const Execution& run, const Lighting& lighting) {
-    constexpr std::uint32_t few = MOST_SHADOW_RAYS / 4;  // an invocation shades up to four surfaces
-    constexpr std::uint32_t most_parts = 64;
-    const LightTable& lights = run.value(lighting.lights.table);
-    const std::uint32_t count = shows_direct(lighting.show) ? light_count(lights) : 0;
-    const bool many_rays =
-        lighting.shadow_rays && std::ranges::count_if(lights.entries, &LightTable::Entry::casts_shadow) > few;
-    return loop_parts(count, many_rays ? std::clamp(count / most_parts, few, 8192U) : 8192U);
+std::vector<gl::Uniforms> lighting_parts(const gl::Limits& limits, const Execution& run,
+                                         const Lighting& lighting, std::uint32_t surfaces) {
+    if (!shows_direct(lighting.show)) return loop_parts(limits, 0, 1);
+    const auto& lights = run.value(lighting.lights.table).entries;
+    const auto casting = static_cast<std::uint64_t>(
+        lighting.shadow_rays ? std::ranges::count_if(lights, &LightTable::Entry::casts_shadow) : 0);
+    const bool all_have_rays = casting * surfaces * iterations_a_ray > limits.loop_iterations;
+    return loop_parts(limits, longest_list(run, lighting),
+                      surfaces * (all_have_rays ? iterations_a_ray : iterations_without_ray));
 }
 
 }  // namespace candela

@@ -44,7 +44,7 @@ struct Lighting {
 }
 
 /// Names to define in shaders that include lighting.glsl.
-[[nodiscard]] std::vector<std::string> lighting_variant(const Lighting& lighting);
+[[nodiscard]] std::vector<std::string> lighting_variant(const gl::Limits& limits, const Lighting& lighting);
 
 /// Binds what is not a resource of the graph.
 void bind_lighting(Gpu& gpu, const Lighting& lighting);
@@ -52,11 +52,10 @@ void bind_lighting(Gpu& gpu, const Lighting& lighting);
 /// For a pass whose shader includes lighting.glsl.
 void read_lighting(Pass& pass, const Lighting& lighting);
 
-/// The dispatches or draws of a shading pass. Each adds the light of some entries of the light lists; the
-/// first one also adds the indirect light. With at most 8,192 entries the loops of an invocation stay within
-/// the limit described at `loop_parts`. If more than 8 lights cast shadows, 8 entries are few enough for a
-/// ray wherever a shadow map does not decide (see MOST_SHADOW_RAYS). That is kept up to 512 lights; with
-/// more, there are about 64 parts, and rays may run out.
-[[nodiscard]] std::vector<gl::Uniforms> lighting_parts(const Execution& run, const Lighting& lighting);
+/// The dispatches or draws of a shading pass whose invocations shade `surfaces` surfaces each: see
+/// loop_parts. Each adds the light of some entries of the light lists; the first one also adds the indirect
+/// light. On a driver that stops long loops, there are so many that each light of a list may cast a ray.
+[[nodiscard]] std::vector<gl::Uniforms> lighting_parts(const gl::Limits& limits, const Execution& run,
+                                                       const Lighting& lighting, std::uint32_t surfaces);
 
 }  // namespace candela

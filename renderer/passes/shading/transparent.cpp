@@ -1,12 +1,12 @@
 #include "renderer/passes/shading/transparent.hpp"
 
-#include <fmt/format.h>
 #include <algorithm>
 
 #include <candela/graph/execute.hpp>
 #include <candela/workload.hpp>
-#include "renderer/gpu/loop_parts.hpp"
+#include "renderer/gpu/compute_steps.hpp"
 #include "renderer/passes/surfaces/draw_scene.hpp"
+#include "shaders/bindings.glsl"
 
 namespace candela {
 namespace {
@@ -38,17 +38,6 @@ constexpr gl::RasterState covering{.depth_test = gl::DepthTest::nearer,
                                    .blending = gl::Blending::cover,
                                    .culling = gl::Culling::back};
 
-/// Most lights of a scene with blended surfaces. These cannot be shaded in several draws, because each draw
-/// would cover what the draws before it have added.
-constexpr std::uint32_t most_lights = 16384;
-
-void check_lights(std::size_t lights) {
-    if (lights > most_lights) {
-        throw gl::GlError(
-            fmt::format("{} lights: where there are blended surfaces, {} are possible", lights, most_lights));
-    }
-}
-
 void draw_blended(Gpu& gpu, const SortedDraw& next) {
     if (next.group->material->double_sided) {
         gl::RasterState backs = covering;
@@ -58,42 +47,97 @@ void draw_blended(Gpu& gpu, const SortedDraw& next) {
     draw_in_group(gpu, *next.group, next.draw, 1, covering);
 }
 
-}  // namespace
+/// All that the passes here read and draw.
+struct BlendedSurfaces {
+    Gpu* gpu;
+    SceneData scene;
+    Lighting lighting;
+    ViewData view;
+    const gl::Program* program;  ///< null if the scene has none
+};
 
-TextureHandle add_transparent(FrameGraph& graph, Gpu& gpu, const SceneData& scene, const Lighting& lighting,
-                              const ViewData& view, const Surfaces& surfaces, TextureHandle radiance,
-                              const TransparentParts& parts) {
-    return graph.add("transparent", [&](Pass& pass) {
-        pass.tag(Workload::pixels);
-        read_meshes(pass, scene);
-        read_lighting(pass, lighting);
-        pass.read(scene.placement);
-        pass.read(view.camera);
-        read_view(pass, view);
-        test_depth(pass, surfaces);
-        std::vector<std::string> variant = mesh_variant(scene, lighting_variant(lighting));
-        variant.emplace_back("BLENDED");
-        if (parts.emission) variant.emplace_back("EMISSION");
-        if (parts.glass) variant.emplace_back("GLASS");
-        const gl::Program* const program =
-            scene.kinds.blended
-                ? &gpu.program({"surfaces/mesh_surface.vert", "shading/forward.frag"}, variant)
-                : nullptr;
-        const TextureHandle out = pass.write(radiance, Usage::colour_target);
-        pass.run([=, &gpu](Execution& run) {
-            const std::vector<SortedDraw> sorted =
-                back_to_front(run.value(scene.layout), run.value(scene.placement), run.value(view.camera));
-            if (sorted.empty()) return;
-            check_lights(run.value(lighting.lights.table).entries.size());
-            bind_lighting(gpu, lighting);
-            bind_meshes(gpu, run, scene);
-            program->use(loop_parts(most_lights, most_lights).front());
-            for (const SortedDraw& next : sorted) {
-                draw_blended(gpu, next);
+BlendedSurfaces read_blended(Pass& pass, Gpu& gpu, const SceneData& scene, const Lighting& lighting,
+                             const ViewData& view, const Surfaces& surfaces, const TransparentParts& parts) {
+    pass.tag(Workload::pixels);
+    read_meshes(pass, scene);
+    read_lighting(pass, lighting);
+    pass.read(scene.placement);
+    pass.read(view.camera);
+    read_view(pass, view);
+    test_depth(pass, surfaces);
+    std::vector<std::string> variant = mesh_variant(scene, lighting_variant(gpu.device().limits(), lighting));
+    variant.emplace_back("BLENDED");
+    if (parts.emission) variant.emplace_back("EMISSION");
+    if (parts.glass) variant.emplace_back("GLASS");
+    const gl::Program* const program =
+        scene.kinds.blended ? &gpu.program({"surfaces/mesh_surface.vert", "shading/forward.frag"}, variant)
+                            : nullptr;
+    return {&gpu, scene, lighting, view, program};
+}
+
+std::vector<SortedDraw> sorted_draws(const Execution& run, const BlendedSurfaces& blended) {
+    return back_to_front(run.value(blended.scene.layout), run.value(blended.scene.placement),
+                         run.value(blended.view.camera));
+}
+
+std::vector<gl::Uniforms> parts_of(const Execution& run, const BlendedSurfaces& blended) {
+    return lighting_parts(blended.gpu->device().limits(), run, blended.lighting, 1);
+}
+
+void draw_part(Execution& run, const BlendedSurfaces& blended, const std::vector<SortedDraw>& sorted,
+               const gl::Uniforms& part) {
+    bind_lighting(*blended.gpu, blended.lighting);
+    bind_meshes(*blended.gpu, run, blended.scene);
+    blended.program->use(part);
+    for (const SortedDraw& next : sorted) {
+        draw_blended(*blended.gpu, next);
+    }
+}
+
+/// Adds node `transparent-parts` (raster and compute), for drivers that stop long loops: draws the surfaces
+/// again with each further part of the light lists, over black, and adds the pictures to `radiance`. That is
+/// the same as drawing all light at once, because `over` is linear in what lies over and what lies below.
+TextureHandle add_further_parts(FrameGraph& graph, Gpu& gpu, const SceneData& scene, const Lighting& lighting,
+                                const ViewData& view, const Surfaces& surfaces, TextureHandle radiance,
+                                const TransparentParts& features) {
+    return graph.add("transparent-parts", [&](Pass& pass) {
+        const BlendedSurfaces blended = read_blended(pass, gpu, scene, lighting, view, surfaces, features);
+        const gl::Program& adder = gpu.program({"shading/add_part.comp"});
+        const TextureHandle part = pass.write(
+            graph.texture("part of blended surfaces", {view.size, Format::rgba32f}), Usage::colour_target);
+        const TextureHandle out = pass.write(radiance, {Usage::storage, IMAGE_RADIANCE});
+        pass.run([=, &gpu, &adder](Execution& run) {
+            const std::vector<SortedDraw> sorted = sorted_draws(run, blended);
+            const std::vector<gl::Uniforms> parts = parts_of(run, blended);
+            ComputeSteps steps(gpu);
+            for (std::size_t i = 1; i < parts.size() && !sorted.empty(); ++i) {
+                gpu.clear_colour();
+                draw_part(run, blended, sorted, parts[i]);
+                gpu.gl().BindTextureUnit(UNIT_PART, run.object(part));
+                steps.run(adder, {groups(view.size.x, PIXEL_BLOCK), groups(view.size.y, PIXEL_BLOCK)});
             }
         });
         return out;
     });
+}
+
+}  // namespace
+
+TextureHandle add_transparent(FrameGraph& graph, Gpu& gpu, const SceneData& scene, const Lighting& lighting,
+                              const ViewData& view, const Surfaces& surfaces, TextureHandle radiance,
+                              const TransparentParts& features) {
+    const TextureHandle out = graph.add("transparent", [&](Pass& pass) {
+        const BlendedSurfaces blended = read_blended(pass, gpu, scene, lighting, view, surfaces, features);
+        const TextureHandle covered = pass.write(radiance, Usage::colour_target);
+        pass.run([=](Execution& run) {
+            const std::vector<SortedDraw> sorted = sorted_draws(run, blended);
+            if (!sorted.empty()) draw_part(run, blended, sorted, parts_of(run, blended).front());
+        });
+        return covered;
+    });
+    const bool in_parts =
+        scene.kinds.blended && gpu.device().limits().loop_iterations != gl::Limits{}.loop_iterations;
+    return in_parts ? add_further_parts(graph, gpu, scene, lighting, view, surfaces, out, features) : out;
 }
 
 }  // namespace candela

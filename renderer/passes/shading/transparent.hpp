@@ -29,11 +29,11 @@ struct TransparentParts {
 /// box; equal depths keep their order. The back faces of a double-sided drawable are drawn before its front
 /// faces. That is correct for convex drawables that do not intersect; in others, triangles are drawn in the
 /// order of the mesh. Blended surfaces receive direct and indirect light and shadows, but cast no shadows,
-/// also no coloured ones, and place no VPLs; mirrors do not show them. While the scene has any, gl::GlError
-/// is thrown for more than 16,384 lights.
+/// also no coloured ones, and place no VPLs; mirrors do not show them. On drivers that stop long loops, node
+/// `transparent-parts` adds the light of what one draw cannot loop over: see lighting_parts.
 [[nodiscard]] TextureHandle add_transparent(FrameGraph& graph, Gpu& gpu, const SceneData& scene,
                                             const Lighting& lighting, const ViewData& view,
                                             const Surfaces& surfaces, TextureHandle radiance,
-                                            const TransparentParts& parts);
+                                            const TransparentParts& features);
 
 }  // namespace candela

@@ -47,6 +47,12 @@ std::vector<std::string> surface_variant(const Surfaces& surfaces, std::vector<s
     return others;
 }
 
+std::vector<std::string> block_variant(const gl::Limits& limits, const Surfaces& surfaces,
+                                       std::vector<std::string> others) {
+    if (!limits.software) others.emplace_back("ONE_SURFACE");
+    return surface_variant(surfaces, std::move(others));
+}
+
 void read_geometry(Pass& pass, const Surfaces& surfaces) {
     pass.read(*surfaces.depth, {Usage::sampled, UNIT_DEPTH});
     pass.read(*surfaces.normal, {Usage::sampled, UNIT_NORMAL});

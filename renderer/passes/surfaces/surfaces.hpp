@@ -42,6 +42,9 @@ struct MaterialParts {
 /// Names to define in shaders that include visible_surface.glsl.
 [[nodiscard]] std::vector<std::string> surface_variant(const Surfaces& surfaces,
                                                        std::vector<std::string> others = {});
+/// The same for compute shaders that also include shading/pixel_block.glsl.
+[[nodiscard]] std::vector<std::string> block_variant(const gl::Limits& limits, const Surfaces& surfaces,
+                                                     std::vector<std::string> others);
 
 /// Declares the depth of the view as an attachment that `pass` writes.
 [[nodiscard]] TextureHandle write_depth(FrameGraph& graph, Pass& pass, const ViewData& view);

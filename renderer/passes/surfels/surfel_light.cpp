@@ -131,7 +131,8 @@ DirectLight add_direct_light(FrameGraph& graph, Gpu& gpu, const Tracing& tracing
                 {"point_count", points}, {"light_count", light_count}, {"ray_offset", metrics.ray_offset()},
                 {"surfel_count", count}, {"emitting_count", emitters}, {"sky_patch_count", patches}};
             ComputeSteps steps(gpu);
-            for (const gl::Uniforms& part : loop_parts(light_count, MOST_POINT_RAYS)) {
+            for (const gl::Uniforms& part :
+                 loop_parts(gpu.device().limits(), light_count, iterations_a_ray / 2)) {
                 steps.run_rows(run, lighter, {1, groups(points, SURFEL_GROUP)}, uniforms + part);
             }
             steps.run(adder, {groups(count, SURFEL_GROUP)}, count_uniforms(count));
