@@ -39,8 +39,10 @@ std::vector<FrameTime> Timer::collect() {
 }
 
 std::vector<FrameTime> Timer::finish() {
-    device_->gl().Finish();
-    return collect();
+    std::vector<FrameTime> times;
+    for (Frame& frame : pending_) times.push_back(read(std::move(frame)));
+    pending_.clear();
+    return times;
 }
 
 Query Timer::stamp() {

@@ -24,8 +24,9 @@ struct FrameTime {
     std::vector<PassTime> passes;
 };
 
-/// Measures GPU time by timestamp queries. Results are read only when they are available, so that only
-/// `finish` waits. Query objects are reused.
+/// Measures GPU time by timestamp queries. `collect` reads only results that are available, so that
+/// only `finish` waits: for the results themselves, which a driver may have later than it has finished
+/// its work. Query objects are reused.
 class Timer {
  public:
     explicit Timer(Device& device) : device_(&device) {}
