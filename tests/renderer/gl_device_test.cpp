@@ -1,9 +1,11 @@
 #include <doctest/doctest.h>
 
 #include <algorithm>
+#include <cstdlib>
 #include <cstring>
 #include <optional>
 #include <string>
+#include <string_view>
 
 #include "renderer/gl/objects.hpp"
 #include "renderer/gpu/gpu.hpp"
@@ -74,6 +76,13 @@ void* debug_user(const gl::Functions& gl) {
 }
 
 }  // namespace
+
+TEST_CASE_FIXTURE(GlFixture, "the second driver is the one that the environment asks for") {
+    // Mesa falls back to its own one without a word.
+    const char* const wanted = std::getenv("MESA_LOADER_DRIVER_OVERRIDE");
+    if (wanted == nullptr || std::string_view(wanted) != "zink") return;
+    if (tested_context() == ContextKind::egl) CHECK(device.renderer().starts_with("zink"));
+}
 
 TEST_CASE_FIXTURE(GlFixture, "a device reports its driver, limits and extensions") {
     CHECK_FALSE(device.renderer().empty());

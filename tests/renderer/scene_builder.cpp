@@ -281,6 +281,8 @@ RenderTarget::RenderTarget(gl::Device& device, glm::uvec2 size, Format format)
     framebuffer_.attach_colour(0, texture_.name());
     framebuffer_.draw_buffers(1);
     framebuffer_.check();
+    // A new texture holds anything.
+    device.gl().ClearTexImage(texture_.name(), 0, GL_RGBA, GL_FLOAT, nullptr);
 }
 
 Picture RenderTarget::read() const {

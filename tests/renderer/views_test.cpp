@@ -155,7 +155,7 @@ TEST_CASE_FIXTURE(ViewsTests, "views share a framebuffer, each in its rectangle"
         for (std::uint32_t x = 0; x < all.x; ++x) {
             const glm::uvec2 on_left(x - 1, y - 2);
             const glm::uvec2 on_right(x - size.x - 4, y - 3);
-            glm::vec3 expected(0.0F);  // of the target's texture, untouched
+            glm::vec3 expected(0.0F);  // of the target, untouched
             if (on_left.x < size.x && on_left.y < size.y) {
                 expected = left.at(on_left.x, on_left.y);
             } else if (on_right.x < size.x && on_right.y < size.y) {
