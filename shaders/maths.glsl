@@ -1,4 +1,5 @@
 const float PI = 3.14159265358979;
+#define INFINITY uintBitsToFloat(0x7f800000u)
 
 float largest(vec3 v) { return max(abs(v.x), max(abs(v.y), abs(v.z))); }
 

@@ -24,6 +24,7 @@ void main() {
     uint count = 0u;
     for (uint word = first; word < last; ++word) count += uint(bitCount(fill_mask[word]));
     counts[id] = count;
+    memoryBarrierShared();
     barrier();
     uint index = 0u;
     for (uint i = 0u; i < id; ++i) index += counts[i];

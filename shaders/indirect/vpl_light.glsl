@@ -1,6 +1,7 @@
 // Light that virtual point lights (VPLs) send to surfaces. The entry is add_vpl. An invocation has SURFACES surfaces.
 #include "bindings.glsl"
 #include "indirect/gathered.glsl"
+#include "maths.glsl"
 #include "vpls/disc.glsl"
 #include "sky/sky_patch.glsl"
 #include "surfaces/surface.glsl"
@@ -187,7 +188,7 @@ void add_direction(inout Gathered gathered, uint direction, Surface surface) {
     uint place = direction / 2u + direction % 2u * (COVER_DIRECTIONS / 2u);
     vec3 towards = cosine_direction(face_normal(surface), sample_2d(place, 0u, 0u));
     vec3 origin = visible_position(surface, vpl_constants.ray_offset) + vpl_constants.ray_offset * face_normal(surface);
-    if (!is_surface(closest_hit(origin, towards, 0.0, 1.0 / 0.0), towards)) return;
+    if (!is_surface(closest_hit(origin, towards, 0.0, INFINITY), towards)) return;
     vec3 irradiance = PI / float(COVER_DIRECTIONS) * lit_surfels[vpl_constants.mean_record].flux;
     add_gathered(gathered, irradiance, towards, surface);
 }

@@ -141,8 +141,10 @@ void mark_for_fill(bool needs_fill) {
     uint word = gl_LocalInvocationID.x / 32u;
     bool first = gl_LocalInvocationID.x % 32u == 0u;
     if (first) group_mask[word] = 0u;
+    memoryBarrierShared();
     barrier();
     if (needs_fill) atomicOr(group_mask[word], 1u << (gl_LocalInvocationID.x % 32u));
+    memoryBarrierShared();
     barrier();
     uint group = gl_WorkGroupID.y * gl_NumWorkGroups.x + gl_WorkGroupID.x;
     if (first) fill_mask[group * (RECONSTRUCT_GROUP / 32) + word] = group_mask[word];

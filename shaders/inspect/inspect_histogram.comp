@@ -36,12 +36,14 @@ void main() {
         if (clear) counts[i] = 0u;
         parts[i] = 0u;
     }
+    memoryBarrierShared();
     barrier();
     vec2 range = automatic_range ? ranges[0].xy : chosen_range;
     uint end = clear ? 0u : texels.x;
     for (uint x = own * between; x < end; x += INSPECT_GROUP * between) {
         count_texel(uvec2(x, gl_WorkGroupID.x * between), range);
     }
+    memoryBarrierShared();
     barrier();
     for (uint i = own; i < BINS; i += INSPECT_GROUP) {
         if (parts[i] > 0u) atomicAdd(counts[i], parts[i]);

@@ -35,6 +35,7 @@ void main() {
     }
     parts[own] = range;
     for (uint others = INSPECT_GROUP / 2; others > 0u; others /= 2u) {
+        memoryBarrierShared();
         barrier();
         if (own < others) parts[own] = merged(parts[own], parts[own + others]);
     }

@@ -3,6 +3,7 @@
 #include "lights/directional_light.glsl"
 #include "lights/point_light.glsl"
 #include "lights/spot_light.glsl"
+#include "maths.glsl"
 
 layout(std430, binding = BINDING_LIGHTS) readonly restrict buffer Lights { Light lights[]; };
 
@@ -23,7 +24,7 @@ Emission sample_emission(Light light, vec2 u) {
 
 // Distance to the light, metres.
 float distance_to(Light light, vec3 position) {
-    return light.kind == LIGHT_DIRECTIONAL ? 1.0 / 0.0 : length(light.position - position);
+    return light.kind == LIGHT_DIRECTIONAL ? INFINITY : length(light.position - position);
 }
 
 // Share of the light that its range lets through to a point.

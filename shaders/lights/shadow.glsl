@@ -52,7 +52,7 @@ float mapped_visibility(Shadow shadow, bool cube, vec3 origin, vec3 normal, vec3
 // Whether a ray from `origin` to the light is blocked. It ends before the light, which may lie on a surface.
 bool is_blocked(Shadow shadow, vec3 origin, Light light) {
     vec3 direction = -light.direction;
-    float end = 1.0 / 0.0;
+    float end = INFINITY;
     if (shadow.kind != SHADOW_ORTHOGRAPHIC) {
         float distance = max(length(light.position - origin), 1e-30);
         direction = (light.position - origin) / distance;

@@ -1,6 +1,7 @@
 // Emits a rectangle that contains all texels of a shadow map that a triangle may be marked in: those whose centre is less
 // than a texel, along each axis, from the triangle (Hasselgren et al., "Conservative Rasterization", GPU Gems 2, 2005).
 #include "lights/shadow_plane.glsl"
+#include "maths.glsl"
 
 layout(triangles) in;
 layout(triangle_strip, max_vertices = 4) out;
@@ -30,7 +31,7 @@ void main() {
     for (int i = 0; i < 3; ++i) clip[i] = clip_from_world * vec4(vertex_in_world[i], 1.0);
 
     // The rectangle around the part that is not too near.
-    vec2 lower = vec2(1.0 / 0.0);
+    vec2 lower = vec2(INFINITY);
     vec2 upper = -lower;
     int farthest = 0;
     for (int i = 0; i < 3; ++i) {

@@ -2,6 +2,7 @@
 // One work group per tile.
 #include "bindings.glsl"
 #include "lights/light_cells.glsl"
+#include "maths.glsl"
 #include "types.glsl"
 #include "view/view.glsl"
 
@@ -32,17 +33,18 @@ float view_depth(float window_depth) {
 
 void main() {
     if (gl_LocalInvocationIndex == 0u) {
-        nearest_bits = ordered_bits(1.0 / 0.0);
-        farthest_bits = ordered_bits(-1.0 / 0.0);
+        nearest_bits = ordered_bits(INFINITY);
+        farthest_bits = ordered_bits(-INFINITY);
         mask = 0u;
     }
+    memoryBarrierShared();
     barrier();
     uvec2 tile = gl_WorkGroupID.xy;
     uvec2 first = tile * grid.tile_size;
     uvec2 extent = min(first + grid.tile_size, grid.target_size) - first;
     uint pixels = extent.x * extent.y;
-    float nearest = 1.0 / 0.0;
-    float farthest = -1.0 / 0.0;
+    float nearest = INFINITY;
+    float farthest = -INFINITY;
     for (uint i = gl_LocalInvocationIndex; i < pixels; i += 64u) {
         float window_depth = texelFetch(depth_texture, ivec2(first + uvec2(i % extent.x, i / extent.x)), 0).r;
         if (window_depth == 0.0) continue;
@@ -52,6 +54,7 @@ void main() {
     }
     atomicMin(nearest_bits, ordered_bits(nearest));
     atomicMax(farthest_bits, ordered_bits(farthest));
+    memoryBarrierShared();
     barrier();
     // The bounds get a margin of 1e-4 for rounding. A tile without surfaces has nearest > farthest.
     TileDepth bounds = TileDepth(from_ordered_bits(nearest_bits), from_ordered_bits(farthest_bits), 0u, 0u);
@@ -67,6 +70,7 @@ void main() {
         seen |= slices_between(bounds.nearest, bounds.farthest, depth - 0.1 * slack, depth + 0.1 * slack);
     }
     atomicOr(mask, seen);
+    memoryBarrierShared();
     barrier();
     if (gl_LocalInvocationIndex > 0u) return;
     bounds.mask = mask;

@@ -1,5 +1,6 @@
 // A ray from each glossy pixel, in a direction that its surface reflects to the viewer, and what it meets: another surface,
 // as visible_surface.glsl reads it (MIRRORED), and what that one emits (EMISSION); or the sky (SKY). One fragment per pixel.
+#include "maths.glsl"
 #include "mirror/glossy_surface.glsl"
 #ifdef EMITTERS
 #include "mirror/emitter_rays.glsl"
@@ -153,7 +154,7 @@ void main() {
     vec3 direction = ray.direction;
     if (ray.density <= 0.0 || dot(direction, face_normal(surface)) <= 0.0) discard;
     vec3 origin = visible_position(surface, ray_offset) + ray_offset * face_normal(surface);
-    Hit hit = closest_hit(origin, direction, 0.0, 1.0 / 0.0);
+    Hit hit = closest_hit(origin, direction, 0.0, INFINITY);
     width_and_position = vec4(0.0);
     normal_and_direction = vec4(0.0, 0.0, octahedral_encode(-direction));
     albedo.a = 0.0;

@@ -59,6 +59,7 @@ void main() {
     uint own = gl_LocalInvocationID.x;
     parts[own] = finish ? of_groups() : of_picture();
     for (uint others = EXPOSURE_GROUP / 2; others > 0u; others /= 2u) {
+        memoryBarrierShared();
         barrier();
         if (own < others) parts[own] += parts[own + others];
     }

@@ -1,6 +1,7 @@
 // Traversal of the bounding-volume hierarchy, which has up to four children a node: engine/bvh/wide.hpp. Rays pass
 // through the holes of alpha masks.
 #include "bindings.glsl"
+#include "maths.glsl"
 #include "scene/materials.glsl"
 #include "types.glsl"
 
@@ -25,7 +26,7 @@ float enter_box(vec3 lower, vec3 upper, vec3 origin, vec3 inverse_direction, flo
     float enter = max(max(near.x, near.y), max(near.z, t_min));
     float leave = min(min(far.x, far.y), min(far.z, t_max));
     // Tolerates the rounding error of the products (Ize, "Robust BVH Ray Traversal", 2013).
-    return enter <= leave * 1.00001 ? enter : 1.0 / 0.0;
+    return enter <= leave * 1.00001 ? enter : INFINITY;
 }
 
 // Inverse of a direction. Components near zero are replaced by ±1e-20, as 0 × infinity would be NaN in the slab test.

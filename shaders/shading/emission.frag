@@ -4,8 +4,8 @@
 layout(location = 0) out vec4 radiance;
 
 void main() {
-#ifdef MASKED
-    fragment_colour();  // discards holes
-#endif
     radiance = vec4(fragment_emission(), 1.0);
+#ifdef MASKED
+    discard_hole(fragment_colour().a);
+#endif
 }

@@ -45,7 +45,6 @@ layout(location = 0) out vec4 radiance;
 
 void main() {
     vec4 colour = fragment_colour();
-    if (gl_HelperInvocation) return;  // as in vpl_maps.frag: this shader may trace rays too
     Surface surfaces[SURFACES];
     uvec2 pixels[SURFACES];
     vec3 reflected[SURFACES];
@@ -57,6 +56,13 @@ void main() {
 #ifdef BUMPY
     set_bumps(surfaces[0], fragment_bumps());
 #endif
+#ifdef EMISSION
+    vec3 emitted = part_first == 0u ? fragment_emission() : vec3(0.0);
+#else
+    const vec3 emitted = vec3(0.0);
+#endif
+    discard_hole(colour.a);
+    if (gl_HelperInvocation) return;  // as in vpl_maps.frag: this shader may trace rays too
 #ifdef BLENDED
     float alpha = cover_of(colour.a);
     vec3 passing = take_passing(surfaces[0]);
@@ -66,10 +72,6 @@ void main() {
 #endif
     reflect_radiance(surfaces, pixels, reflected);
 #ifdef BLENDED
-    vec3 emitted = vec3(0.0);
-#ifdef EMISSION
-    if (part_first == 0u) emitted = fragment_emission();
-#endif
 #if defined(GLOSSY) && !defined(SHOW_SURFACES)
     reflected[0] += alpha * emitted;
 #else

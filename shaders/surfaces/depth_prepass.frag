@@ -11,4 +11,5 @@ void main() {
 #ifdef WITH_NORMALS
     packed_normal = fragment_surface(colour.rgb).normal;
 #endif
+    discard_hole(colour.a);
 }

@@ -16,7 +16,8 @@ layout(location = 2) out vec4 bumps;
 #endif
 
 void main() {
-    PackedSurface surface = fragment_surface(fragment_colour().rgb);
+    vec4 colour = fragment_colour();
+    PackedSurface surface = fragment_surface(colour.rgb);
     packed_normal = surface.normal;
     albedo = vec4(surface.albedo, 1.0);
 #ifdef GLOSSY
@@ -28,4 +29,5 @@ void main() {
     PackedBumps packed_bumps = fragment_bumps();
     bumps = vec4(packed_bumps.normal, packed_bumps.open, 0.0);
 #endif
+    discard_hole(colour.a);
 }

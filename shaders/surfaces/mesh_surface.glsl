@@ -30,14 +30,18 @@ vec4 image_at(sampler2D image, uint which) {
 vec4 image_at(sampler2D image, uint which) { return texture(image, uv); }
 #endif
 
-// Base colour (linear) and alpha. With MASKED, discards the fragment in a hole of the material's alpha mask. Without it
-// there is no discard in the program, so the GPU can reject hidden fragments by an early depth test.
+// Base colour (linear) and alpha.
 vec4 fragment_colour() {
-    vec4 surface = materials[material_index].base_colour * texture(base_colour, uv) * (1.0 + colour_off_white);
+    return materials[material_index].base_colour * texture(base_colour, uv) * (1.0 + colour_off_white);
+}
+
+// With MASKED, discards the fragment in a hole of the material's alpha mask, for which all images must have been read:
+// their levels depend on the neighbours, and have no meaning once one of these is gone. Without it there is no discard in
+// the program, so the GPU can reject hidden fragments by an early depth test.
+void discard_hole(float alpha) {
 #ifdef MASKED
-    if (surface.a < materials[material_index].alpha_cutoff) discard;
+    if (alpha < materials[material_index].alpha_cutoff) discard;
 #endif
-    return surface;
 }
 
 #ifdef EMISSION

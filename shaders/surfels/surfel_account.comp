@@ -44,6 +44,7 @@ void main() {
         truncated[lane] += left;
         if (any(greaterThan(abs(left), LITTLE * (cell.direct + cell.albedo * indirect)))) is_spent[lane] = false;
     }
+    memoryBarrierShared();
     barrier();
     if (lane > 0u) return;
     FluxAccount account = FluxAccount(vec3(0.0), 0.0, vec3(0.0), 0.0, vec3(0.0), 0.0, vec3(0.0), 0.0, vec3(0.0), 0.0,

@@ -2,6 +2,7 @@
 // cosine-weighted rays. The form factors of the surfel's row should add up to it. A surfel keeps what its rays have
 // found, unless it is to be traced. One work group per surfel, COVER_RAYS rays an invocation, which bounds its
 // loops.
+#include "maths.glsl"
 #include "scene/bvh.glsl"
 #include "scene/changed_boxes.glsl"
 #include "sampling.glsl"
@@ -23,7 +24,7 @@ bool is_outdated(uint id, Surfel surfel) {
     if (everything_changed || has_task(id, SURFEL_WHOLE | SURFEL_NO_FACTORS)) return true;
     if (changed_box_count == 0u || !has_task(id, SURFEL_CHANGED)) return false;
     for (uint i = 0u; i < COVER_RAYS; ++i) {
-        if (may_have_changed(surfel.position, ray_direction(surfel, i), 1.0 / 0.0)) return true;
+        if (may_have_changed(surfel.position, ray_direction(surfel, i), INFINITY)) return true;
     }
     return false;
 }
@@ -37,7 +38,7 @@ void main() {
     uint rays = has_task(id, SURFEL_NO_FACTORS) ? 0u : COVER_RAYS;
     for (uint i = 0u; i < rays; ++i) {
         vec3 direction = ray_direction(surfel, i);
-        Hit hit = closest_hit(surfel.position + ray_offset * surfel.normal, direction, 0.0, 1.0 / 0.0);
+        Hit hit = closest_hit(surfel.position + ray_offset * surfel.normal, direction, 0.0, INFINITY);
         if (is_surface(hit, direction)) ++hits;
     }
     cover[id * COVER_PARTS + gl_LocalInvocationID.x] = hits;

@@ -52,8 +52,10 @@ vec3 bounces_to_add() {
 void main() {
     uint lane = gl_LocalInvocationID.x;
     add_up(lane);
+    memoryBarrierShared();
     barrier();
     if (lane == 0u) further = bounces_to_add();
+    memoryBarrierShared();
     barrier();
     for (uint id = lane; id < surfel_count; id += SURFEL_GROUP) {
         vec3 last = bounced[at_last(id)].rgb;

@@ -2,6 +2,7 @@
 // light (EMITTERS); of the sky (SKY); and the flux that the points emit themselves, π times radiance times area. One
 // invocation per cell point.
 #include "bindings.glsl"
+#include "maths.glsl"
 #include "scene/bvh.glsl"
 #include "lights/lights.glsl"
 #include "loop_part.glsl"
@@ -150,7 +151,7 @@ vec3 irradiance_from_sky(uint id, CellPoint point) {
     vec3 sum = vec3(0.0);
     for (uint i = share.first; i < sky_patch_count; i += share.step) {
         PatchLight light = light_of_patch(sky_patches[i], point.normal);
-        if (light.cosine > 0.0 && !any_hit(origin, light.direction, 0.0, 1.0 / 0.0)) {
+        if (light.cosine > 0.0 && !any_hit(origin, light.direction, 0.0, INFINITY)) {
             sum += light.cosine / PI * sky_patches[i].light;
         }
     }

@@ -28,6 +28,7 @@ void main() {
     }
     fluxes[lane] = flux;
     areas[lane] = area;
+    memoryBarrierShared();
     barrier();
     if (lane > 0u) return;
     for (uint i = 1u; i < SURFEL_GROUP; ++i) {

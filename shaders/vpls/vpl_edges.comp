@@ -2,6 +2,7 @@
 // there is no crease between them. Runs whenever VPLs are written, since the surroundings of a VPL may have moved even
 // if it has not. One invocation per VPL and direction. See theory.md, "Edges of a VPL's surface".
 #include "bindings.glsl"
+#include "maths.glsl"
 #include "scene/bvh.glsl"
 #include "types.glsl"
 
@@ -28,7 +29,7 @@ float edge_distance(vec3 above, vec3 along, vec3 normal) {
     float at = far;
     for (int i = 0; i <= EDGE_BISECTIONS; ++i) {
         bool goes_on = any_hit(above + at * along, -normal, 0.0, 2.0 * rise);
-        if (i == 0 && (goes_on || far <= 0.0)) return 1.0 / 0.0;
+        if (i == 0 && (goes_on || far <= 0.0)) return INFINITY;
         if (goes_on) {
             near = at;
         } else {
@@ -59,6 +60,7 @@ void main() {
     uint direction = gl_LocalInvocationID.x;
     bool alive = id < vpl_count && traced_vpls[min(id, vpl_count - 1u)].flux != vec3(0.0);
     if (alive) inverse_edges[gl_LocalInvocationID.y][direction] = inverse_edge(traced_vpls[id], direction);
+    memoryBarrierShared();
     barrier();
     if (!alive || direction > 0u) return;
     float edges[DIRECTIONS] = inverse_edges[gl_LocalInvocationID.y];

@@ -1,5 +1,6 @@
 // Depth map of a VPL: traces a ray through the centre of the texel. Slots without a map are cleared. One fragment per
 // texel.
+#include "maths.glsl"
 #include "scene/bvh.glsl"
 #include "scene/changed_boxes.glsl"
 #include "vpls/mapped_vpl.glsl"
@@ -19,7 +20,7 @@ void main() {
     MapFrame frame = vpl_map_frame(vpl.position, vpl.normal, vpl.map);
     vec3 local = normalize(vpl_map_point(frame, at * 2.0 - 1.0));
     vec3 direction = local * frame.map_from_world;
-    if (!everything_changed && (task & SURFEL_WHOLE) == 0u && !may_have_changed(origin, direction, 1.0 / 0.0)) discard;
-    Hit hit = closest_hit(origin, direction, 0.0, 1.0 / 0.0);
+    if (!everything_changed && (task & SURFEL_WHOLE) == 0u && !may_have_changed(origin, direction, INFINITY)) discard;
+    Hit hit = closest_hit(origin, direction, 0.0, INFINITY);
     gl_FragDepth = hit.triangle == NO_TRIANGLE ? 0.0 : vpl_map_depth(frame, hit.t * local);
 }

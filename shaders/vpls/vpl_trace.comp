@@ -1,6 +1,7 @@
 // Traces light paths from the lights, one segment a dispatch (Keller, "Instant Radiosity", 1997). One invocation a
 // path. The hierarchy holds no blended surfaces: light passes through them unchanged.
 #include "bindings.glsl"
+#include "maths.glsl"
 #include "scene/bvh.glsl"
 #include "lights/lights.glsl"
 #include "types.glsl"
@@ -21,7 +22,7 @@ struct Ray {
 
 // The bounce at the end of a segment; `throughput` is the product of the albedos before it.
 VplRecord follow(Ray ray, vec3 throughput) {
-    Hit hit = closest_hit(ray.origin, ray.direction, 0.0, 1.0 / 0.0);
+    Hit hit = closest_hit(ray.origin, ray.direction, 0.0, INFINITY);
     if (hit.triangle == NO_TRIANGLE) return VplRecord(ray.origin, VPL_ESCAPED, ray.direction, 0.0, vec3(0.0), 0.0);
     TraceTriangle triangle = triangles[hit.triangle];
     vec3 front = normalize(cross(triangle.edge_ab, triangle.edge_ac));

@@ -13,7 +13,7 @@
 
 float visibility_of_sky(vec3 direction, Surface surface) {
     vec3 origin = visible_position(surface, vpl_constants.ray_offset) + vpl_constants.ray_offset * face_normal(surface);
-    return any_hit(origin, direction, 0.0, 1.0 / 0.0) ? 0.0 : 1.0;
+    return any_hit(origin, direction, 0.0, INFINITY) ? 0.0 : 1.0;
 }
 
 float visibility_by_ray(vec3 position, vec3 normal, Surface surface) {

@@ -7,8 +7,10 @@
 #include <algorithm>
 #include <array>
 #include <cstdlib>
+#include <filesystem>
 #include <fstream>
 #include <map>
+#include <regex>
 #include <set>
 #include <string>
 #include <vector>
@@ -17,8 +19,11 @@
 #include <candela/graph/frame_graph.hpp>
 #include <candela/inspection.hpp>
 #include <candela/scene/tangents.hpp>
+#include "renderer/facade/device_of.hpp"
+#include "renderer/gl/shader_source.hpp"
 #include "shaders/bindings.glsl"
 #include "tests/renderer/path_fixture.hpp"
+#include "tests/renderer/shader_rules.hpp"
 #include "tests/sandbox/temporary_folder.hpp"
 
 TEST_SUITE("second compiler") {
@@ -122,6 +127,28 @@ MeshInstance glass_square() {
     return {std::make_shared<const Mesh>(std::move(mesh))};
 }
 
+std::string text_of(const std::filesystem::path& file) {
+    std::ifstream in(file);
+    return {std::istreambuf_iterator<char>(in), {}};
+}
+
+/// The comment at the head of a shader file, by which it is recognised in a source.
+std::string first_line(std::string_view text) {
+    const std::size_t comment = text.find("// ");
+    return std::string(text.substr(comment, text.find('\n', comment) - comment));
+}
+
+/// The macros that a shader file asks for.
+std::set<std::string> macros_asked(std::string_view text, const char* form) {
+    std::set<std::string> macros;
+    const std::string file(text);
+    const std::regex asked(form);
+    for (std::sregex_iterator match(file.begin(), file.end(), asked), end; match != end; ++match) {
+        macros.insert((*match)[1]);
+    }
+    return macros;
+}
+
 /// The file extension by which glslang recognises the stage.
 std::string ending(GLenum stage) {
     switch (stage) {
@@ -208,6 +235,35 @@ TEST_CASE_FIXTURE(GlFixture, "glslang compiles every variant of every program") 
     add(world, Transform{}, glass_square());
     renderer.render(world, camera, target.target());
     configure_each(VplPlacement::surfels, Show::total);
+    // And more surfaces than VPLs, of which some share one; more VPLs than are summed one by one, in a
+    // picture that is enlarged, with an estimate of its error; on a driver without a CPU's limits.
+    for (int i = 0; i < 300; ++i)
+        add(world, at({0.0F, -0.01F * static_cast<float>(i), 0.0F}), plain_square(AlphaMode::opaque));
+    const RenderTarget large(device, {64, 48});
+    configuration.frame_budget_ms = 1e-3F;
+    const auto render_with = [&](std::uint32_t vpls) {
+        configuration.vpls.count = vpls;
+        REQUIRE(renderer.configure(configuration).empty());
+        for (int frame = 0; frame < 3; ++frame) {
+            world.set(camera, at({0.0F, 1.0F + 0.01F * static_cast<float>(frame), 0.0F}));
+            const RenderView view{.camera = camera, .target = large.target(), .estimate_error = true};
+            renderer.render(world, {&view, 1});
+        }
+    };
+    render_with(16);
+    render_with(1024);
+    gl::Limits limits = device_of(renderer).limits();
+    limits.software = false;
+    device_of(renderer).pretend(limits);
+    render_with(256);
+    // And from surfaces of a host's.
+    const gl::Texture depth(device, "depth", {{1, 1}, Format::r32f});
+    const gl::Texture normal(device, "normal", {{1, 1}, Format::rgba32f});
+    const RenderView of_host{
+        .camera = camera,
+        .target = target.target(),
+        .surfaces = HostSurfaces{.depth = depth.name(), .normal = normal.name(), .albedo = normal.name()}};
+    renderer.render(world, {&of_host, 1});
     // Inspection of textures, of integers and of light lists, and the difference of two pictures.
     Extension integers{.name = "integers", .place = ExtensionPlace::after_surfaces};
     integers.declare = [](FrameGraph& graph, ViewFrame&) {
@@ -223,7 +279,23 @@ TEST_CASE_FIXTURE(GlFixture, "glslang compiles every variant of every program") 
     }
     const gl::Texture picture(device, "picture", {{1, 1}, Format::rgba8});
     draw_difference(renderer, picture.name(), picture.name(), 1.0F, target.target());
-    CHECK(sources.size() > 40);
+    // Every stage was there, and every macro that a file asks for and none defines.
+    std::set<std::string> asked;
+    std::set<std::string> defined;
+    for (const gl::EmbeddedShader& file : gl::embedded_shaders()) {
+        if (!file.name.ends_with(".glsl")) {
+            const std::string head = first_line(file.text);
+            const bool there = std::ranges::any_of(
+                sources, [&](const auto& source) { return source.second.find(head) != std::string::npos; });
+            CHECK_MESSAGE(there, file.name);
+        }
+        asked.merge(macros_asked(file.text, R"(#ifn?def (\w+))"));
+        asked.merge(macros_asked(file.text, R"(defined\((\w+)\))"));
+        defined.merge(macros_asked(file.text, R"(#define (\w+))"));
+    }
+    for (const std::string& macro : asked) {
+        if (macro != "__cplusplus" && !defined.contains(macro)) CHECK_MESSAGE(has_variant({macro}), macro);
+    }
     for (const auto& variant : std::vector<std::vector<std::string>>{{"AUTOMATIC"},
                                                                      {"BUMPY"},
                                                                      {"BUMPY", "MASKED"},
@@ -256,9 +328,24 @@ TEST_CASE_FIXTURE(GlFixture, "glslang compiles every variant of every program") 
     }
     command += " > " + (folder / "said").string();
     const int status = std::system(command.c_str());
-    std::ifstream said(folder / "said");
-    const std::string log{std::istreambuf_iterator<char>(said), {}};
-    CHECK_MESSAGE(WEXITSTATUS(status) == 0, log);
+    CHECK_MESSAGE(WEXITSTATUS(status) == 0, text_of(folder / "said"));
+
+    // What the preprocessor leaves of each means the same to every driver.
+    const std::string preprocess =
+        "cd " + (folder / "").string() + " && " CANDELA_GLSLANG " -E *.frag *.comp > preprocessed";
+    REQUIRE(std::system(preprocess.c_str()) == 0);
+    const std::string all = text_of(folder / "preprocessed");
+    std::set<std::string> faults;
+    std::size_t shaders = 0;
+    for (std::size_t at = all.find("#version"); at < all.size(); ++shaders) {
+        const std::size_t end = std::min(all.find("#version", at + 1), all.size());
+        for (const std::string& fault : ambiguities(all.substr(at, end - at))) faults.insert(fault);
+        at = end;
+    }
+    CHECK(shaders == static_cast<std::size_t>(std::ranges::count_if(sources, [](const auto& source) {
+              return source.first == GL_FRAGMENT_SHADER || source.first == GL_COMPUTE_SHADER;
+          })));
+    for (const std::string& fault : faults) FAIL_CHECK(fault);
 }
 
 }  // TEST_SUITE("second compiler")
