@@ -13,7 +13,7 @@ void draw_difference(Renderer& renderer, std::uint32_t a, std::uint32_t b, float
     require_possible(gpu.device(), target);
     require_texture(gpu.device(), a, target.size, "the first picture");
     require_texture(gpu.device(), b, target.size, "the second picture");
-    const gl::HostState host_state(gpu.gl());
+    const gl::HostState host_state(gpu.gl(), gpu.keeps_gl_state());
     draw_difference(gpu, {.first = a, .second = b}, factor, target);
 }
 

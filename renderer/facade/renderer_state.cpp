@@ -284,7 +284,7 @@ bool Renderer::State::render(const World& world, std::span<const RenderView> vie
                              const FrameOptions& options) {
     gpu_.require_context();
     require_views(views);
-    const gl::HostState host_state(gpu_.gl());
+    const gl::HostState host_state(gpu_.gl(), gpu_.keeps_gl_state());
     for (const RenderView& view : views) {
         if (view.surfaces) require_readable(gpu_.device(), *view.surfaces);
     }
@@ -466,7 +466,7 @@ std::vector<FrameReport> Renderer::State::take_frames(bool wait) {
 void Renderer::State::tone_map(const std::vector<glm::vec3>& radiance, const Target& target) {
     gpu_.require_context();
     require_possible(gpu_.device(), target);
-    const gl::HostState host_state(gpu_.gl());
+    const gl::HostState host_state(gpu_.gl(), gpu_.keeps_gl_state());
     gl::Texture texture(gpu_.device(), "averaged radiance", {target.size, Format::rgba32f});
     std::vector<glm::vec4> texels;
     texels.reserve(radiance.size());
@@ -482,7 +482,7 @@ void Renderer::State::tone_map(GLuint texture, const Target& target) {
     gpu_.require_context();
     require_possible(gpu_.device(), target);
     require_texture(gpu_.device(), texture, "the radiance");
-    const gl::HostState host_state(gpu_.gl());
+    const gl::HostState host_state(gpu_.gl(), gpu_.keeps_gl_state());
     gpu_.gl().BindTextureUnit(UNIT_RADIANCE, texture);
     gpu_.nearest().bind(UNIT_RADIANCE);
     candela::tone_map(gpu_, target, display_of(configuration_));

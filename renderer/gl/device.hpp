@@ -45,7 +45,7 @@ struct Limits {
     bool software = false;          ///< the driver renders on the CPU
     /// Iterations of all loops of an invocation together after which the driver silently stops them. The
     /// largest value: it never does.
-    std::uint32_t loop_iterations = std::numeric_limits<std::uint32_t>::max();
+    std::uint64_t loop_iterations = std::numeric_limits<std::uint64_t>::max();
 };
 
 /// Whether a device turns on the debug output of its context: see DebugLog. If off, it neither reads nor

@@ -302,20 +302,22 @@ void set_assumed_state(const Functions& gl) {
     gl.ProvokingVertex(GL_LAST_VERTEX_CONVENTION);  // drivers may round interpolated values in another way
 }
 
-HostState::HostState(const Functions& gl) {
-    // While transform feedback runs, the program can be neither changed nor restored.
-    Restore resume = pause_transform_feedback(gl);
-    restore_ = {save_objects(gl),
-                save_texture_units(gl),
-                save_images(gl),
-                save_indexed_buffers(gl, indexed_targets[0]),
-                save_indexed_buffers(gl, indexed_targets[1]),
-                save_viewports(gl),
-                save_draw_buffers(gl),
-                save_capabilities(gl),
-                save_rasterisation(gl),
-                save_depth_and_clears(gl),
-                std::move(resume)};
+HostState::HostState(const Functions& gl, bool keeps) {
+    if (keeps) {
+        // While transform feedback runs, the program can be neither changed nor restored.
+        Restore resume = pause_transform_feedback(gl);
+        restore_ = {save_objects(gl),
+                    save_texture_units(gl),
+                    save_images(gl),
+                    save_indexed_buffers(gl, indexed_targets[0]),
+                    save_indexed_buffers(gl, indexed_targets[1]),
+                    save_viewports(gl),
+                    save_draw_buffers(gl),
+                    save_capabilities(gl),
+                    save_rasterisation(gl),
+                    save_depth_and_clears(gl),
+                    std::move(resume)};
+    }
     set_assumed_state(gl);
 }
 

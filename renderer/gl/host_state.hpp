@@ -26,8 +26,8 @@ void set_assumed_state(const Functions& gl);
 /// because OpenGL cannot tell whether it is. State that OpenGL 4.6 or extensions add is not looked at.
 class HostState {
  public:
-    /// `gl` must outlive the object.
-    explicit HostState(const Functions& gl);
+    /// `gl` must outlive the object. Without `keeps`, nothing is saved, and nothing restored.
+    HostState(const Functions& gl, bool keeps);
     ~HostState();
     HostState(const HostState&) = delete;
     HostState& operator=(const HostState&) = delete;

@@ -79,6 +79,7 @@ Gpu::Gpu(const gl::GetProc& get_proc, gl::ShaderLibrary shaders, const RendererO
     : log_(options.log),
       scene_check_(log_, options.checked),
       checked_(options.checked),
+      keeps_gl_state_(options.keeps_gl_state),
       device_(get_proc, options.debug_output ? gl::DebugOutput::on : gl::DebugOutput::off,
               [this](const gl::DebugMessage& message) { log_.warn("OpenGL: " + message.text); }),
       programs_(device_, std::move(shaders), options.program_cache, log_),

@@ -70,6 +70,8 @@ class Gpu {
     [[nodiscard]] SceneCheck& scene_check() { return scene_check_; }
     /// See RendererOptions::checked.
     [[nodiscard]] bool checked() const { return checked_; }
+    /// See RendererOptions::keeps_gl_state.
+    [[nodiscard]] bool keeps_gl_state() const { return keeps_gl_state_; }
 
     /// Draws to a target of the host's.
     void set_target(const Target& target) const;
@@ -92,6 +94,7 @@ class Gpu {
     Log log_;
     SceneCheck scene_check_;
     bool checked_;
+    bool keeps_gl_state_;
     gl::Device device_;
     Programs programs_;
     gl::VertexArray mesh_vertices_;

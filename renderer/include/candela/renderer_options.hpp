@@ -31,6 +31,10 @@ struct RendererOptions {
     /// lie elsewhere than those of the world, or face another way. For development: the last of these waits
     /// for the GPU.
     bool checked = false;
+    /// The host's GL state is the same after each call of the renderer as before: see Renderer::render. That
+    /// takes about 300 state queries a frame. Off: nothing is asked or restored, and what the renderer has
+    /// set stays, for hosts that set all state that they need; transform feedback must not be active.
+    bool keeps_gl_state = true;
 };
 
 }  // namespace candela

@@ -1,6 +1,8 @@
 #include "renderer/passes/indirect/vpl_light.hpp"
 
 #include <algorithm>
+#include <cstdint>
+#include <limits>
 
 #include "renderer/gpu/loop_parts.hpp"
 #include "renderer/passes/surfels/surfel_placement.hpp"
@@ -36,7 +38,9 @@ std::uint32_t iterations_a_vpl(const VplLight& light) {
 }
 
 std::uint32_t vpls_a_loop(const gl::Limits& limits, const VplLight& light) {
-    return std::max(limits.loop_iterations / iterations_a_vpl(light), 1U);
+    constexpr std::uint64_t all = std::numeric_limits<std::int32_t>::max();
+    return static_cast<std::uint32_t>(
+        std::clamp<std::uint64_t>(limits.loop_iterations / iterations_a_vpl(light), 1, all));
 }
 
 std::vector<std::string> vpl_light_variant(const VplLight& light) {
