@@ -88,14 +88,15 @@ struct LightReceiver {
 #define SHADOW_CUBE 0u
 #define SHADOW_PERSPECTIVE 1u
 #define SHADOW_ORTHOGRAPHIC 2u
-#define SHADOW_NONE 3u
+#define SHADOW_BY_RAYS 3u
+#define SHADOW_NONE 4u
 
 // The shadow map of the light with the same index, or one of the faces of cubes, which follow those of the lights.
 struct Shadow {
     mat4 from_world;   // to clip space; unused by cubes
     float depth_scale; // change of depth per change of the inverse distance along the map's axis, metres; orthographic: 0
     uint layer;        // of the map; cubes: index of the Shadow of their first face, whose layer is one of the cubes' array
-    uint kind;         // SHADOW_*; the light has no shadow map: SHADOW_NONE, and nothing else counts
+    uint kind;         // SHADOW_*: of the map. The light has none: SHADOW_BY_RAYS; it casts no shadow: SHADOW_NONE
     float ray_offset;  // metres above a surface, where rays to the light start
 };
 

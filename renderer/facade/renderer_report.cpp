@@ -127,9 +127,9 @@ LightReport Renderer::State::report_lights(const ViewHandles& view) const {
         return report;  // shadow maps are culled
     }
     const ShadowPlan& shadows = runtime_.value(frame_.lights.shadows.plan);
-    report.with_shadow = shadows.cubes + shadows.maps;
+    report.with_map = shadows.cubes + shadows.maps;
     report.shadow_views = runtime_.value(frame_.lights.shadows.drawn).newly_drawn;
-    report.without_shadow = shadows.lights_without;
+    report.without_map = shadows.by_rays;
     if (!view.lists) return report;
     const LightBins& bins = runtime_.value(view.lists->bins);
     auto counts = backend_.buffer(runtime_.object(view.lists->count)).download<std::uint32_t>();

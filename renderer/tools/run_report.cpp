@@ -40,8 +40,8 @@ Json to_json(const VplReport& vpls) {
 
 Json to_json(const LightReport& lights) {
     return {{"count", lights.count},
-            {"with_shadow", lights.with_shadow},
-            {"without_shadow", lights.without_shadow},
+            {"with_map", lights.with_map},
+            {"without_map", lights.without_map},
             {"global", lights.global},
             {"tile_max", lights.tile_max},
             {"tile_mean", lights.tile_mean},

@@ -377,7 +377,7 @@ void draw_clips(Document& document) {
 }
 
 void draw_light_counts(const LightReport& lights) {
-    text(fmt::format("shadow maps: {}, no room for {}", lights.with_shadow, lights.without_shadow));
+    text(fmt::format("shadow maps: {}, by rays alone: {}", lights.with_map, lights.without_map));
     if (lights.tile_max == 0) return;
     text(fmt::format("a list: {:.1f} in the mean, {} at most", lights.tile_mean, lights.tile_max));
     text(fmt::format("in all lists: {}", lights.global));

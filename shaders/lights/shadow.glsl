@@ -50,13 +50,13 @@ float mapped_visibility(Shadow shadow, bool cube, vec3 origin, vec3 normal, vec3
 }
 
 // Whether a ray from `origin` to the light is blocked. It ends before the light, which may lie on a surface.
-bool is_blocked(Shadow shadow, vec3 origin, Light light) {
+bool is_blocked(float ray_offset, vec3 origin, Light light) {
     vec3 direction = -light.direction;
     float end = INFINITY;
-    if (shadow.kind != SHADOW_ORTHOGRAPHIC) {
+    if (light.kind != LIGHT_DIRECTIONAL) {
         float distance = max(length(light.position - origin), 1e-30);
         direction = (light.position - origin) / distance;
-        end = distance - shadow.ray_offset;
+        end = distance - ray_offset;
     }
     return any_hit(origin, direction, 0.0, end);
 }
@@ -67,11 +67,13 @@ float shadow_visibility(uint index, Light light, Surface surface) {
     if (shadow.kind == SHADOW_NONE) return 1.0;
     vec3 normal = face_normal(surface);
     vec3 origin = visible_position(surface, shadow.ray_offset) + shadow.ray_offset * normal;
-    bool cube = shadow.kind == SHADOW_CUBE;
-    if (cube) shadow = shadows[shadow.layer + cube_face(origin - light.position)];
-    float visibility = mapped_visibility(shadow, cube, origin, normal, light.position);
-    if (visibility != UNKNOWN) return visibility;
-    return is_blocked(shadow, origin, light) ? 0.0 : 1.0;
+    if (shadow.kind != SHADOW_BY_RAYS) {
+        bool cube = shadow.kind == SHADOW_CUBE;
+        if (cube) shadow = shadows[shadow.layer + cube_face(origin - light.position)];
+        float visibility = mapped_visibility(shadow, cube, origin, normal, light.position);
+        if (visibility != UNKNOWN) return visibility;
+    }
+    return is_blocked(shadow.ray_offset, origin, light) ? 0.0 : 1.0;
 }
 
 #endif

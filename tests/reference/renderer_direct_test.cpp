@@ -39,7 +39,7 @@ class DirectLight : public PathFixture {
         configure(configuration);
         renderer.invalidate();
         const tools::Picture picture = reference::flipped(render(scene, sampled_size));
-        CHECK(renderer.report().lights.without_shadow == 0);
+        CHECK(renderer.report().lights.without_map == 0);
         const std::vector<std::uint8_t> away = reference::without(truth.hit, truth.edge);
         return {study::measure(picture, truth.direct, away).rel_mse,
                 study::measure(study::scaled_down(picture, samples_across),

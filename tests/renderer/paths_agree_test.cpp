@@ -272,7 +272,7 @@ class PathsAgree : public PathFixture {
         for (const Row& row : rows) {
             CAPTURE(row.name);
             check_paths(row.scene, row.size, row.configuration);
-            CHECK(renderer.report().lights.without_shadow == 0);
+            CHECK(renderer.report().lights.without_map == 0);
         }
     }
 };

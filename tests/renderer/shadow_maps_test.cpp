@@ -323,14 +323,14 @@ TEST_CASE_FIXTURE(ShadowMapTests, "walls do not shadow each other at their commo
     }
 }
 
-TEST_CASE_FIXTURE(ShadowMapTests, "lights for which the texture has no layers left get no shadow") {
+TEST_CASE_FIXTURE(ShadowMapTests, "lights for which the texture has no layers left have no map") {
     Scene scene = ground();
     for (int i = 0; i < 400; ++i) add(scene.world, at({0, 1, 0}), PointLight{.intensity = 0.1F});
     shadows(true, 16);
     static_cast<void>(picture(scene));
     // 2,048 layers, six per cube map.
-    CHECK(renderer.report().lights.with_shadow == 341);
-    CHECK(renderer.report().lights.without_shadow == 59);
+    CHECK(renderer.report().lights.with_map == 341);
+    CHECK(renderer.report().lights.without_map == 59);
 }
 
 }  // TEST_SUITE("shadow maps")

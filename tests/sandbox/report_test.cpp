@@ -36,7 +36,7 @@ tools::RunReport some_run() {
     run.state.vpls =
         VplReport{.requested = 256, .alive = 251, .paths = 120, .flux = balanced(), .estimated_error = 0.25};
     run.state.lights = {
-        .count = 300, .with_shadow = 2, .without_shadow = 1, .global = 4, .tile_max = 19, .tile_mean = 6.5};
+        .count = 300, .with_map = 2, .without_map = 1, .global = 4, .tile_max = 19, .tile_mean = 6.5};
     run.state.memory = {
         .texture_bytes = 7, .buffer_bytes = 8, .shared_by_aliasing_bytes = 9, .free_pool_bytes = 0};
     return run;
@@ -60,8 +60,8 @@ TEST_CASE("report.json has the members that scripts use") {
     CHECK(json["vpls"]["estimated_error"] == 0.25);
     CHECK(json["vpls"]["flux"]["truncated"] == nlohmann::json::array({2.0, 4.0, 9.0}));
     CHECK(json["vpls"]["flux"]["roulette_error"] == nlohmann::json::array({0.5, 0.25, 0.125}));
-    CHECK(json["lights"]["with_shadow"] == 2);
-    CHECK(json["lights"]["without_shadow"] == 1);
+    CHECK(json["lights"]["with_map"] == 2);
+    CHECK(json["lights"]["without_map"] == 1);
     CHECK(json["lights"]["global"] == 4);
     CHECK(json["lights"]["tile_max"] == 19);
     CHECK(json["lights"]["tile_mean"] == 6.5);

@@ -251,7 +251,7 @@ Json work_json(const Report& report, std::size_t pixels) {
                  {"rays", vpls.rays},
                  {"triangles", report.triangles},
                  {"lights", report.lights.count},
-                 {"shadows", report.lights.with_shadow},
+                 {"shadows", report.lights.with_map},
                  {"lists", nullptr}};
     if (report.lights.tile_max > 0) {
         work["lists"] = {{"global", report.lights.global},

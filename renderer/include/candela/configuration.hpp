@@ -99,7 +99,7 @@ struct ShadowSettings {
     bool enabled = true;
     std::uint32_t cube_resolution = 512;  ///< cube faces: point lights, and spots of more than 60° half angle
     std::uint32_t map_resolution = 1024;  ///< flat maps: other spot lights, and directional lights
-    std::uint32_t budget_mib = 256;       ///< MiB for all maps together
+    std::uint32_t budget_mib = 256;       ///< MiB for all maps together; lights without one take more rays
     bool operator==(const ShadowSettings&) const = default;
 };
 

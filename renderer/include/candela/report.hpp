@@ -70,10 +70,11 @@ struct VplReport {
 /// Counts of the real lights. Lights that emit nothing are not counted.
 struct LightReport {
     std::uint32_t count = 0;
-    std::uint32_t with_shadow = 0;   ///< lights that have a shadow map
+    std::uint32_t with_map = 0;   ///< lights that have a shadow map
     std::uint32_t shadow_views = 0;  ///< drawn in the last run of `shadow-maps`: 6 per cube, 1 per flat map
-    /// Lights that should cast shadows but have no map: over ShadowSettings::budget_mib or the layer limit.
-    std::uint32_t without_shadow = 0;
+    /// Lights whose shadows take a ray everywhere, because ShadowSettings::budget_mib or the number of layers
+    /// leaves no room for a map.
+    std::uint32_t without_map = 0;
     /// Lights that every cell visits: they have no range, or the light lists would exceed their memory.
     std::uint32_t global = 0;
     std::uint32_t tile_max = 0;  ///< lights visited by the tile or cluster that visits most; 0 without lists

@@ -71,8 +71,14 @@ const std::array<Face, cube_faces> faces{{{{1, 0, 0}, {0, -1, 0}},
                                           {{0, 0, 1}, {0, -1, 0}},
                                           {{0, 0, -1}, {0, -1, 0}}}};
 
-const gpu::Shadow no_shadow{
-    .from_world = glm::mat4(1.0F), .depth_scale = 0.0F, .layer = 0, .kind = SHADOW_NONE, .ray_offset = 0.0F};
+/// A shadow of a kind without any map.
+gpu::Shadow without_map(std::uint32_t kind, float ray_offset) {
+    return {.from_world = glm::mat4(1.0F),
+            .depth_scale = 0.0F,
+            .layer = 0,
+            .kind = kind,
+            .ray_offset = ray_offset};
+}
 
 ShadowPlan::View view_of(const gpu::Light& light, const MapProjection& projection, const glm::dmat4& view) {
     return {.clip_from_world = glm::mat4(projection.from_view * view),
@@ -93,10 +99,8 @@ gpu::Shadow shadow_of(const ShadowPlan::View& view, float ray_offset) {
 gpu::Shadow add_cube(ShadowPlan& plan, const gpu::Light& light, const ShadowShape& shape, float ray_offset) {
     const double resolution = plan.resolution.cube;
     const MapProjection projection = perspective(resolution / (resolution - 1.0), shape.near, shape.far);
-    gpu::Shadow cube = no_shadow;
+    gpu::Shadow cube = without_map(SHADOW_CUBE, ray_offset);
     cube.layer = static_cast<std::uint32_t>(plan.shadows.size());
-    cube.kind = SHADOW_CUBE;
-    cube.ray_offset = ray_offset;
     for (std::uint32_t face = 0; face < cube_faces; ++face) {
         ShadowPlan::View view =
             view_of(light, projection, look_along(light.position, faces[face].direction, faces[face].up));
@@ -288,7 +292,7 @@ ShadowPlan plan_shadows(const LightTable& lights, const SceneMetrics& metrics, c
                         float scale) {
     ShadowPlan plan;
     plan.resolution = shadow_resolution(settings, scale);
-    plan.shadows.assign(lights.entries.size(), no_shadow);
+    plan.shadows.assign(lights.entries.size(), without_map(SHADOW_NONE, 0.0F));
     const auto bytes = [](std::uint64_t resolution, std::uint64_t layers) {
         return resolution * resolution * layers * bytes_per_depth;
     };
@@ -302,7 +306,8 @@ ShadowPlan plan_shadows(const LightTable& lights, const SceneMetrics& metrics, c
             cube ? bytes(settings.cube_resolution, cube_faces) : bytes(settings.map_resolution, 1);
         const bool no_layer = cube ? (plan.cubes + 1) * cube_faces > most_layers : plan.maps == most_layers;
         if (cost > budget || no_layer) {
-            ++plan.lights_without;
+            ++plan.by_rays;
+            plan.shadows[i] = without_map(SHADOW_BY_RAYS, metrics.ray_offset());
             continue;
         }
         budget -= cost;
