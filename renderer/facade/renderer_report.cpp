@@ -89,7 +89,7 @@ VplReport Renderer::State::report_vpls(const Vpls& vpls, const ViewHandles& view
                      .waiting = schedule_.waiting(),
                      .interleave = view.interleave,
                      .filled_pixels = count_filled(view),
-                     .flux = {},
+                     .flux = sum_up(read(vpls.flux, counts.accounts)),
                      .estimated_error = estimate_error(view)};
     if (const auto* const traced = std::get_if<TracedVpls>(&vpls.records)) {
         const PathPlan& plan = runtime_.value(traced->plan);
@@ -97,13 +97,11 @@ VplReport Renderer::State::report_vpls(const Vpls& vpls, const ViewHandles& view
         report.alive = count_alive(placed);
         report.paths = static_cast<std::uint32_t>(plan.paths.size());
         report.rays = count_rays(plan.paths, placed);
-        report.flux = sum_up(read(vpls.flux, plan.paths.size()));
         return report;
     }
     const auto& lit = std::get<LitSurfels>(vpls.records);
     report.alive = count_alive(read(lit.surfels, counts.surfels));
     if (lit.emitters) report.alive += count_alive(read(*lit.emitters, counts.emitters));
-    report.flux = sum_up(read(vpls.flux, std::min(counts.all_surfels(), 1U)));
     return report;
 }
 

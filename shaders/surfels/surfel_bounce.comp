@@ -1,9 +1,15 @@
 // One bounce: surfels gather the light that others reflect. In the first dispatch (FIRST) that is the reflected flux of
 // the lights, placed where it falls within each cell; later it is what the others gathered in the previous bounce. Adds
-// to CellLight::indirect. One invocation per ROWS_A_BOUNCE surfels.
+// to CellLight::indirect. One invocation per ROWS_A_BOUNCE surfels, or with SLICES, that many per surfel.
 #include "surfels/surfel.glsl"
 
+#ifdef SLICES
+layout(local_size_x = BOUNCE_GROUP, local_size_y = SLICES) in;
+#else
 layout(local_size_x = BOUNCE_GROUP) in;
+#define SLICES 1u
+#define ONE_SLICE
+#endif
 
 layout(std430, binding = BINDING_SURFELS) readonly restrict buffer Surfels { Surfel surfels[]; };
 layout(std430, binding = BINDING_DIRECT_POINTS) readonly restrict buffer DirectPoints { DirectPoint direct_points[]; };
@@ -64,18 +70,9 @@ void add_column(inout RowsHere here, uint other, float factors[ROWS_A_BOUNCE]) {
 
 #endif
 
-void main() {
-    uint first = gl_GlobalInvocationID.x;
-    uint apart = bounce_rows_apart();
-    if (first >= apart) return;
-    RowsHere here;
-    for (uint k = 0u; k < ROWS_A_BOUNCE; ++k) {
-        uint id = min(first + k * apart, surfel_count - 1u);
-        here.position[k] = surfels[id].position;
-        here.normal[k] = surfels[id].normal;
-        here.sum[k] = vec3(0.0);
-    }
-    for (uint i = 0u; i < columns / 2u; ++i) {
+// Every SLICES-th pair of columns, from that of the invocation's slice on.
+void gather(inout RowsHere here, uint first, uint apart) {
+    for (uint i = gl_LocalInvocationID.y; i < columns / 2u; i += SLICES) {
         float even[ROWS_A_BOUNCE];
         float odd[ROWS_A_BOUNCE];
         for (uint k = 0u; k < ROWS_A_BOUNCE; ++k) {
@@ -89,6 +86,40 @@ void main() {
         other = surfel_of(first, 2u * i + 1u);
         if (other < surfel_count) add_column(here, other, odd);
     }
+}
+
+#ifdef ONE_SLICE
+
+void add_slices(inout RowsHere here) {}
+
+#else
+
+shared vec3 slices[SLICES][BOUNCE_GROUP];
+
+void add_slices(inout RowsHere here) {
+    uint row = gl_LocalInvocationID.x;
+    slices[gl_LocalInvocationID.y][row] = here.sum[0];
+    memoryBarrierShared();
+    barrier();
+    here.sum[0] = vec3(0.0);
+    for (uint i = 0u; i < SLICES; ++i) here.sum[0] += slices[i][row];
+}
+
+#endif
+
+void main() {
+    uint first = gl_GlobalInvocationID.x;
+    uint apart = bounce_rows_apart();
+    RowsHere here;
+    for (uint k = 0u; k < ROWS_A_BOUNCE; ++k) {
+        uint id = min(first + k * apart, surfel_count - 1u);
+        here.position[k] = surfels[id].position;
+        here.normal[k] = surfels[id].normal;
+        here.sum[k] = vec3(0.0);
+    }
+    if (first < apart) gather(here, first, apart);
+    add_slices(here);
+    if (first >= apart || gl_LocalInvocationID.y > 0u) return;
     for (uint k = 0u; k < ROWS_A_BOUNCE; ++k) {
         uint id = first + k * apart;
         if (id >= surfel_count) return;

@@ -1,12 +1,16 @@
-// The GL calls of a frame in which nothing has changed: what a host pays for having Candela.
+// The GL calls of frames: what a host pays for having Candela, and how long a GPU waits between small pieces
+// of work.
 
 #include <doctest/doctest.h>
 
 #include <array>
 #include <cstddef>
+#include <cstdint>
 #include <numeric>
 #include <string_view>
+#include <type_traits>
 
+#include "renderer/facade/device_of.hpp"
 #include "renderer/gl/functions.hpp"
 #include "tests/renderer/scene_builder.hpp"
 
@@ -26,6 +30,35 @@ constexpr std::array<std::string_view, functions> names{CANDELA_GL_FUNCTIONS(CAN
 
 std::array<int, functions> calls;
 
+/// What waits for what in a frame.
+struct Chain {
+    int steps = 0;             ///< pieces of work, each of which waits for the one before it
+    int small_dispatches = 0;  ///< of fewer than 10,000 invocations, or of a number that the GPU finds
+    bool waits = true;         ///< the next work is a new step
+};
+Chain chain;
+
+void note_dispatch(std::uint64_t groups);
+
+void note(Index index, std::uint64_t groups) {
+    if (index == of_MemoryBarrier || index == of_PushDebugGroup)
+        chain.waits = true;  // the latter: another pass
+    const bool dispatches = index == of_DispatchCompute || index == of_DispatchComputeIndirect;
+    if (!dispatches && index != of_DrawArrays && index != of_MultiDrawElementsIndirect) return;
+    if (chain.waits) ++chain.steps;
+    chain.waits = false;
+    if (dispatches) note_dispatch(groups);
+}
+
+/// Of DispatchCompute's arguments; else 0.
+template <class... Arguments>
+std::uint64_t groups_of(Arguments... arguments) {
+    if constexpr (sizeof...(Arguments) == 3 && (std::is_same_v<Arguments, GLuint> && ...)) {
+        return (std::uint64_t{arguments} * ...);
+    }
+    return 0;
+}
+
 /// Counts the calls of one function of the driver's.
 template <Index index, class Function>
 struct Counted;
@@ -34,9 +67,21 @@ struct Counted<index, Result(APIENTRY*)(Arguments...)> {
     static inline Result(APIENTRY* driver)(Arguments...) = nullptr;
     static Result APIENTRY call(Arguments... arguments) {
         ++calls[index];
+        note(index, groups_of(arguments...));
         return driver(arguments...);
     }
 };
+
+void note_dispatch(std::uint64_t groups) {
+    const auto query = Counted<of_GetIntegerv, PFNGLGETINTEGERVPROC>::driver;
+    const auto query_program = Counted<of_GetProgramiv, PFNGLGETPROGRAMIVPROC>::driver;
+    GLint program = 0;
+    query(GL_CURRENT_PROGRAM, &program);
+    std::array<GLint, 3> size{};
+    query_program(static_cast<GLuint>(program), GL_COMPUTE_WORK_GROUP_SIZE, size.data());
+    const auto invocations = groups * static_cast<std::uint64_t>(size[0] * size[1] * size[2]);
+    if (invocations < 10'000) ++chain.small_dispatches;
+}
 
 gl::GetProc counting(const gl::GetProc& get_proc) {
     return [get_proc](const char* wanted) -> void (*)() {
@@ -78,6 +123,24 @@ class GlCalls : public GlFixture {
         return sum;
     }
 
+    /// Of a frame in which a light has moved, on a GPU.
+    Chain of_moved_light(const Configuration& configuration) {
+        Renderer renderer(counting(context->get_proc()), RendererOptions{.keeps_gl_state = false});
+        gl::Limits limits = device_of(renderer).limits();
+        limits.software = false;
+        limits.loop_iterations = gl::Limits{}.loop_iterations;
+        device_of(renderer).pretend(limits);
+        REQUIRE(renderer.configure(configuration).empty());
+        Scene scene = cornell_box();
+        const RenderTarget target(device, {160, 120});
+        for (int frame = 0; frame < 2; ++frame) {
+            scene.world.edit<Transform>(scene.light, [](Transform& pose) { pose.translation.x += 0.01F; });
+            chain = {};
+            renderer.render(scene.world, scene.camera, target.target());
+        }
+        return chain;
+    }
+
     Picture picture;  ///< of the last frame
 };
 
@@ -94,6 +157,14 @@ TEST_CASE_FIXTURE(GlCalls,
     CHECK(not_kept.queries <= 30);
     CHECK(not_kept.all <= 150);
     CHECK(picture == same);
+}
+
+TEST_CASE_FIXTURE(GlCalls, "a light that moves is a short chain of work, of which little is small") {
+    const Chain chain_of_light = of_moved_light(Configuration{});
+    MESSAGE(chain_of_light.steps, " steps, ", chain_of_light.small_dispatches, " small dispatches");
+    // A GPU takes some microseconds from a step to the next.
+    CHECK(chain_of_light.steps <= 20);
+    CHECK(chain_of_light.small_dispatches <= 15);
 }
 
 }  // TEST_SUITE("GL calls")

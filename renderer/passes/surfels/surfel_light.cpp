@@ -33,11 +33,14 @@ SurfelNumbers numbers_of(const Execution& run, const Surfels& surfels) {
     return {run.value(surfels.counts).all_surfels(), run.value(surfels.point_count)};
 }
 
+/// Invocations that share the columns of a surfel's first bounces, where a device has many.
+constexpr std::uint32_t slices = 16;
+
 struct BouncePrograms {
     const gl::Program& first;
     const gl::Program& further;
-    const gl::Program& extrapolate;
-    const gl::Program& account;
+    bool at_once = false;        // the bounces after the first account are gathered in one dispatch
+    const gl::Program& account;  // if they are, gathers them, too
     const gl::Program& writer;
 };
 
@@ -45,26 +48,48 @@ struct BouncePrograms {
 /// is little, the remaining dispatches have no work groups: where the CPU does their work, dispatches that
 /// only return would take longer than what is gathered. If all bounces are wanted, each time before that the
 /// light of those to come is added as far as the last two tell.
-void gather_bounces(ComputeSteps& steps, const BouncePrograms& programs, std::uint32_t count,
-                    std::uint32_t bounces) {
-    constexpr std::uint32_t bounces_an_account = 4;
+void gather_one_by_one(ComputeSteps& steps, const BouncePrograms& programs, std::uint32_t count,
+                       std::uint32_t bounces) {
     const auto uniforms = [&](std::uint32_t bounce) {
         return count_uniforms(count) + gl::Uniforms{{"bounce", bounce}};
     };
-    const auto gather = [&](const gl::Program& program, std::uint32_t bounce) {
-        steps.run_indirect(program, uniforms(bounce), offsetof(gpu::FluxAccount, bounce_groups));
-    };
-    const auto add_up = [&](const gl::Program& program, std::uint32_t bounce) {
-        steps.run_indirect(program, uniforms(bounce), offsetof(gpu::FluxAccount, account_groups));
-    };
-    steps.run(programs.account, {}, uniforms(1));
+    steps.run(programs.account, {}, uniforms(1) + gl::Uniforms{{"foresees", false}});
     for (std::uint32_t bounce = 2; bounce <= bounces; ++bounce) {
-        gather(bounce == 2 ? programs.first : programs.further, bounce);
-        if (bounce % bounces_an_account == 0 || bounce == bounces) {
-            if (bounces == all_bounces) add_up(programs.extrapolate, bounce);
-            add_up(programs.account, bounce);
+        steps.run_indirect(bounce == 2 ? programs.first : programs.further, uniforms(bounce),
+                           offsetof(gpu::FluxAccount, bounce_groups));
+        if (bounce % BOUNCES_AN_ACCOUNT == 0 || bounce == bounces) {
+            steps.run_indirect(programs.account,
+                               uniforms(bounce) + gl::Uniforms{{"foresees", bounces == all_bounces}},
+                               offsetof(gpu::FluxAccount, account_groups));
         }
     }
+}
+
+/// The same in few dispatches, since on a GPU each waits for the one before.
+void gather_at_once(ComputeSteps& steps, const BouncePrograms& programs, std::uint32_t count,
+                    std::uint32_t bounces) {
+    const std::uint32_t apart = std::min<std::uint32_t>(std::max(bounces, 1U), BOUNCES_AN_ACCOUNT);
+    for (std::uint32_t bounce = 2; bounce <= apart; ++bounce) {
+        steps.run(bounce == 2 ? programs.first : programs.further, {groups(count, BOUNCE_GROUP)},
+                  count_uniforms(count) + gl::Uniforms{{"bounce", bounce}});
+    }
+    steps.run(programs.account, {surfel_columns(count).stride},
+              count_uniforms(count) + gl::Uniforms{{"bounces_before", apart},
+                                                   {"last_bounce", std::max(bounces, apart)},
+                                                   {"foresees", bounces == all_bounces}});
+}
+
+BouncePrograms bounce_programs(Gpu& gpu, const std::vector<std::string>& writer_variant) {
+    const bool at_once = !gpu.device().limits().software;
+    std::vector<std::string> variant;
+    if (at_once) variant.push_back(fmt::format("SLICES={}u", slices));
+    std::vector<std::string> first_variant = variant;
+    first_variant.emplace_back("FIRST");
+    return {.first = gpu.program({"surfels/surfel_bounce.comp"}, first_variant),
+            .further = gpu.program({"surfels/surfel_bounce.comp"}, variant),
+            .at_once = at_once,
+            .account = gpu.program({at_once ? "surfels/surfel_bounces.comp" : "surfels/surfel_account.comp"}),
+            .writer = gpu.program({"surfels/surfel_write.comp"}, writer_variant)};
 }
 
 /// Light is evaluated at the cells' points only. A spot that is narrower than they are apart, even where it
@@ -219,12 +244,7 @@ Vpls add_surfel_light(FrameGraph& graph, Gpu& gpu, const Tracing& tracing, const
         if (sources.sky) pass.read(sources.sky->count);
         pass.parameter(bounces);
         pass.parameter(shown);
-        const BouncePrograms programs{
-            .first = gpu.program({"surfels/surfel_bounce.comp"}, {"FIRST"}),
-            .further = gpu.program({"surfels/surfel_bounce.comp"}),
-            .extrapolate = gpu.program({"surfels/surfel_extrapolate.comp"}),
-            .account = gpu.program({"surfels/surfel_account.comp"}),
-            .writer = gpu.program({"surfels/surfel_write.comp"}, writer_variant(sources))};
+        const BouncePrograms programs = bounce_programs(gpu, writer_variant(sources));
         const MeanStep mean_step{sources.balanced ? &gpu.program({"surfels/surfel_mean.comp"}) : nullptr};
         const GroupStep group_step = read_groups(gpu, pass, surfels);
         [[maybe_unused]] const auto lit_cells =
@@ -239,6 +259,8 @@ Vpls add_surfel_light(FrameGraph& graph, Gpu& gpu, const Tracing& tracing, const
         pass.run([=, &gpu, sky = sources.sky](Execution& run) {
             VplCounts counts = run.value(surfels.counts);
             counts.sky_patches = sky ? run.value(sky->count) : 0;
+            counts.accounts = std::min(counts.all_surfels(),
+                                       programs.at_once ? surfel_columns(counts.all_surfels()).stride : 1U);
             counts.directions = lit.balanced && counts.surfels > 0 ? COVER_DIRECTIONS : 0;
             run.set(out.counts, counts);
             const auto [count, points] = numbers_of(run, surfels);
@@ -247,9 +269,10 @@ Vpls add_surfel_light(FrameGraph& graph, Gpu& gpu, const Tracing& tracing, const
             run.reserve(lit.points, points);
             if (lit.emitters) run.reserve(*lit.emitters, counts.emitters);
             if (count == 0) return;
+            run.reserve(out.flux, counts.accounts);
             ComputeSteps steps(gpu);
             gpu.gl().BindBuffer(GL_DISPATCH_INDIRECT_BUFFER, run.object(out.flux));
-            gather_bounces(steps, programs, count, bounces);
+            (programs.at_once ? gather_at_once : gather_one_by_one)(steps, programs, count, bounces);
             mean_step.run(steps, counts, shown);
             steps.run(
                 programs.writer, {groups(count, SURFEL_GROUP)},

@@ -12,6 +12,7 @@ struct VplCounts {
     std::uint32_t sky_patches = 0;  ///< patches of the sky
     std::uint32_t directions = 0;   ///< of light that is the same everywhere: LitSurfels::balanced
     std::uint32_t groups = 0;       ///< of `surfels`, which are summed in their place; 0: there are none
+    std::uint32_t accounts = 0;     ///< elements of Vpls::flux
     bool operator==(const VplCounts&) const = default;
 
     /// VPLs that have depth maps if visibility is found by maps: the first ones.

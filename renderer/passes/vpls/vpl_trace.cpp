@@ -83,7 +83,8 @@ Vpls add_vpl_trace(FrameGraph& graph, Gpu& gpu, const Tracing& tracing, ValueHan
                        .records = traced};
         pass.run([=, &gpu](Execution& run) {
             const PathPlan& plan = run.value(plan_handle);
-            run.set(out.counts, {.traced = plan.vpl_count});
+            const auto paths = static_cast<std::uint32_t>(plan.paths.size());
+            run.set(out.counts, {.traced = plan.vpl_count, .accounts = paths});
             run.reserve(traced.vpls, plan.vpl_count);
             run.reserve(out.flux, plan.paths.size());
             run.reserve(buffers.records, plan.vpl_count);

@@ -33,7 +33,7 @@ struct LitSurfels {
 /// The VPLs of a frame with their light.
 struct Vpls {
     ValueHandle<VplCounts> counts;
-    BufferHandle<gpu::FluxAccount> flux;  ///< one per path, or one for all surfels
+    BufferHandle<gpu::FluxAccount> flux;  ///< one per path, or of all surfels
     std::variant<TracedVpls, LitSurfels> records;
 };
 

@@ -1,0 +1,76 @@
+// All bounces after the first ones, in one dispatch, for devices on which a chain of small dispatches takes long. One work
+// group for each of column_stride classes of surfels: those whose indices are the same modulo column_stride gather from
+// each other only. An invocation gathers for every BOUNCES_GROUP-th surfel of the class.
+#include "surfels/surfel_account.glsl"
+
+layout(local_size_x = BOUNCES_GROUP) in;
+
+layout(std430, binding = BINDING_FORM_FACTORS) readonly restrict buffer FormFactors { uint form_factors[]; };
+
+uniform uint bounces_before;  // number of the last one that was gathered before; 1: none
+uniform uint last_bounce;
+uniform bool foresees;  // adds the bounces to come
+
+const uint ROWS = MOST_COLUMNS / BOUNCES_GROUP;  // of an invocation
+
+shared vec3 sent[BOUNCES_GROUP];  // radiosities of some columns, times the surfels' scales
+
+// `first`: the first of those columns.
+void share_sent(uint bounce, uint first) {
+    uint other = surfel_of(gl_WorkGroupID.x, first + gl_LocalInvocationIndex);
+    vec4 last = other < surfel_count ? bounced[at_previous(bounce, other)] : vec4(0.0);
+    memoryBarrierShared();
+    barrier();  // until the columns before have been read
+    sent[gl_LocalInvocationIndex] = last.a * last.rgb;
+    memoryBarrierShared();
+    barrier();
+}
+
+uint row_of(uint k) { return cell_of(gl_LocalInvocationIndex + k * BOUNCES_GROUP); }
+
+void gather(uint bounce) {
+    vec3 sums[ROWS];
+    for (uint k = 0u; k < ROWS; ++k) sums[k] = vec3(0.0);
+    for (uint first = 0u; first < columns; first += BOUNCES_GROUP) {
+        share_sent(bounce, first);
+        uint pairs = min(columns - first, BOUNCES_GROUP) / 2u;
+        for (uint i = 0u; i < pairs; ++i) {
+            for (uint k = 0u; k < ROWS; ++k) {
+                if (row_of(k) >= surfel_count) break;
+                vec2 factors = unpackHalf2x16(form_factors[form_factors_at(row_of(k), first / 2u + i)]);
+                sums[k] += factors.x * sent[2u * i] + factors.y * sent[2u * i + 1u];
+            }
+        }
+    }
+    for (uint k = 0u; k < ROWS && row_of(k) < surfel_count; ++k) {
+        uint id = row_of(k);
+        float scale = rows[id].x;
+        vec3 irradiance = scale * sums[k];
+        bounced[at_last(bounce, id)] = vec4(cells[id].albedo * irradiance, scale);
+        bounced[2u * surfel_count + id] = vec4(irradiance, 0.0);
+        cells[id].indirect += irradiance;
+    }
+}
+
+// What invocations have written to buffers is there for all others of the group.
+void share_buffers() {
+    memoryBarrierBuffer();
+    memoryBarrierShared();
+    barrier();
+}
+
+void main() {
+    uint bounce = bounces_before;
+    while (true) {
+        if (foresees) add_bounces_to_come(bounce);
+        share_buffers();
+        account_for(bounce);
+        if (!goes_on || bounce == last_bounce) break;
+        uint next_account = min(bounce + BOUNCES_AN_ACCOUNT, last_bounce);
+        while (bounce < next_account) {
+            ++bounce;
+            gather(bounce);
+            share_buffers();
+        }
+    }
+}
