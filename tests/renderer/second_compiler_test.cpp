@@ -9,10 +9,10 @@
 #include <cstdlib>
 #include <filesystem>
 #include <fstream>
-#include <map>
 #include <regex>
 #include <set>
 #include <string>
+#include <utility>
 #include <vector>
 
 #include <candela/extension.hpp>
@@ -23,6 +23,7 @@
 #include "renderer/gl/shader_source.hpp"
 #include "shaders/bindings.glsl"
 #include "tests/renderer/path_fixture.hpp"
+#include "tests/renderer/recorded_programs.hpp"
 #include "tests/renderer/shader_rules.hpp"
 #include "tests/sandbox/temporary_folder.hpp"
 
@@ -32,31 +33,7 @@ using namespace candela;
 
 namespace {
 
-std::map<GLuint, GLenum> stage_of_shader;
-std::set<std::pair<GLenum, std::string>> sources;  // passed to the driver
-
-PFNGLCREATESHADERPROC create_shader = nullptr;
-PFNGLSHADERSOURCEPROC shader_source = nullptr;
-PFNGLLINKPROGRAMPROC link_program = nullptr;
-std::vector<GLuint> programs;  // linked by the driver
-
-GLuint note_stage(GLenum stage) {
-    const GLuint shader = create_shader(stage);
-    stage_of_shader[shader] = stage;
-    return shader;
-}
-
-void note_source(GLuint shader, GLsizei count, const GLchar* const* texts, const GLint* lengths) {
-    std::string whole;
-    for (GLsizei i = 0; i < count; ++i) whole.append(texts[i], static_cast<std::size_t>(lengths[i]));
-    sources.emplace(stage_of_shader.at(shader), std::move(whole));
-    shader_source(shader, count, texts, lengths);
-}
-
-void note_program(GLuint program) {
-    link_program(program);
-    programs.push_back(program);
-}
+std::set<RecordedShader> sources;  // passed to the driver, or by a host
 
 /// Storage blocks of all stages of a program.
 std::uint32_t storage_blocks_of(const gl::Functions& gl, GLuint program) {
@@ -65,31 +42,11 @@ std::uint32_t storage_blocks_of(const gl::Functions& gl, GLuint program) {
     return static_cast<std::uint32_t>(blocks);
 }
 
-/// The driver's functions; those that take shaders or link programs record their arguments.
-gl::GetProc noting(const gl::GetProc& get_proc) {
-    return [get_proc](const char* name) -> void (*)() {
-        void (*const found)() = get_proc(name);
-        if (std::string(name) == "glCreateShader") {
-            create_shader = reinterpret_cast<PFNGLCREATESHADERPROC>(found);
-            return reinterpret_cast<void (*)()>(&note_stage);
-        }
-        if (std::string(name) == "glShaderSource") {
-            shader_source = reinterpret_cast<PFNGLSHADERSOURCEPROC>(found);
-            return reinterpret_cast<void (*)()>(&note_source);
-        }
-        if (std::string(name) == "glLinkProgram") {
-            link_program = reinterpret_cast<PFNGLLINKPROGRAMPROC>(found);
-            return reinterpret_cast<void (*)()>(&note_program);
-        }
-        return found;
-    };
-}
-
 /// Whether a shader with all these macros was passed to the driver.
 bool has_variant(const std::vector<std::string>& macros) {
     return std::ranges::any_of(sources, [&](const auto& source) {
         return std::ranges::all_of(macros, [&](const std::string& macro) {
-            return source.second.find("#define " + macro + " ") != std::string::npos;
+            return source.text.find("#define " + macro + " ") != std::string::npos;
         });
     });
 }
@@ -149,28 +106,15 @@ std::set<std::string> macros_asked(std::string_view text, const char* form) {
     return macros;
 }
 
-/// The file extension by which glslang recognises the stage.
-std::string ending(GLenum stage) {
-    switch (stage) {
-        case GL_VERTEX_SHADER:
-            return "vert";
-        case GL_GEOMETRY_SHADER:
-            return "geom";
-        case GL_FRAGMENT_SHADER:
-            return "frag";
-        default:
-            return "comp";
-    }
-}
-
 /// Notes a host's fragment shader with the functions that light points.
 Extension lighting_points() {
     Extension extension{.name = "points", .place = ExtensionPlace::after_shading};
     extension.declare = [](FrameGraph&, ViewFrame& frame) {
         if (!frame.lighting) return;
-        sources.emplace(GL_FRAGMENT_SHADER, "#version 450 core\n" + frame.lighting->glsl() + R"(
+        sources.insert(
+            {.stage = GL_FRAGMENT_SHADER, .text = "#version 450 core\n" + frame.lighting->glsl() + R"(
 layout(location = 0) out vec3 lit;
-void main() { lit = candela_irradiance(vec3(0.0), vec3(0.0, 1.0, 0.0), 0u); })");
+void main() { lit = candela_irradiance(vec3(0.0), vec3(0.0, 1.0, 0.0), 0u); })"});
     };
     return extension;
 }
@@ -178,7 +122,7 @@ void main() { lit = candela_irradiance(vec3(0.0), vec3(0.0, 1.0, 0.0), 0u); })")
 }  // namespace
 
 TEST_CASE_FIXTURE(GlFixture, "glslang compiles every variant of every program") {
-    TestedRenderer renderer(noting(context->get_proc()));
+    TestedRenderer renderer(RecordedPrograms::recording(context->get_proc()));
     Configuration configuration;
     configuration.refinement.enabled = true;
     REQUIRE(renderer.extend(lighting_points()).empty());
@@ -279,6 +223,10 @@ TEST_CASE_FIXTURE(GlFixture, "glslang compiles every variant of every program") 
     }
     const gl::Texture picture(device, "picture", {{1, 1}, Format::rgba8});
     draw_difference(renderer, picture.name(), picture.name(), 1.0F, target.target());
+    std::vector<RecordedProgram> programs = RecordedPrograms::take();
+    for (RecordedProgram& program : programs) {
+        for (RecordedShader& shader : program.shaders) sources.insert(std::move(shader));
+    }
     // Every stage was there, and every macro that a file asks for and none defines.
     std::set<std::string> asked;
     std::set<std::string> defined;
@@ -286,7 +234,7 @@ TEST_CASE_FIXTURE(GlFixture, "glslang compiles every variant of every program") 
         if (!file.name.ends_with(".glsl")) {
             const std::string head = first_line(file.text);
             const bool there = std::ranges::any_of(
-                sources, [&](const auto& source) { return source.second.find(head) != std::string::npos; });
+                sources, [&](const auto& source) { return source.text.find(head) != std::string::npos; });
             CHECK_MESSAGE(there, file.name);
         }
         asked.merge(macros_asked(file.text, R"(#ifn?def (\w+))"));
@@ -315,14 +263,16 @@ TEST_CASE_FIXTURE(GlFixture, "glslang compiles every variant of every program") 
 
     // A driver that offers fewer storage blocks than the largest program needs is refused at once.
     std::uint32_t most = 0;
-    for (const GLuint program : programs) most = std::max(most, storage_blocks_of(device.gl(), program));
+    for (const RecordedProgram& program : programs) {
+        most = std::max(most, storage_blocks_of(device.gl(), program.name));
+    }
     CHECK(most == MOST_STORAGE_BLOCKS);
 
     const sandbox::TemporaryFolder folder;
     std::string command = CANDELA_GLSLANG;
     int number = 0;
     for (const auto& [stage, text] : sources) {
-        const std::string name = std::to_string(number++) + "." + ending(stage);
+        const std::string name = std::to_string(number++) + "." + file_ending(stage);
         std::ofstream(folder / name.c_str()) << text;
         command += " " + (folder / name.c_str()).string();
     }
@@ -343,7 +293,7 @@ TEST_CASE_FIXTURE(GlFixture, "glslang compiles every variant of every program") 
         at = end;
     }
     CHECK(shaders == static_cast<std::size_t>(std::ranges::count_if(sources, [](const auto& source) {
-              return source.first == GL_FRAGMENT_SHADER || source.first == GL_COMPUTE_SHADER;
+              return source.stage == GL_FRAGMENT_SHADER || source.stage == GL_COMPUTE_SHADER;
           })));
     for (const std::string& fault : faults) FAIL_CHECK(fault);
 }
