@@ -140,6 +140,7 @@
 #define EXPOSURE_GROUP 64   // invocations of a work group of exposure.comp: a power of two
 #define EXPOSURE_GROUPS 256 // work groups that a picture of any size is shared out to
 #define NO_SURFEL 0xffffffffu
+#define CULL_GROUP 64       // invocations of a work group in light_*.comp
 #define SURFEL_GROUP 64     // invocations of a work group in surfel_*.comp: surfels, cell points or rows
 #define BOUNCE_GROUP 32     // the same of surfel_bounce.comp, of a slice: ROWS_A_BOUNCE surfels each
 #define BOUNCES_GROUP 512   // the same of surfel_bounces.comp

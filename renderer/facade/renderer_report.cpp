@@ -80,9 +80,7 @@ void warn_of_few_vpls(Log& log, const VplReport& vpls) {
 
 VplReport Renderer::State::report_vpls(const Vpls& vpls, const ViewHandles& view) const {
     const auto read = [&]<class T>(BufferHandle<T> buffer, std::size_t count) {
-        std::vector<T> elements = backend_.buffer(runtime_.object(buffer)).template download<T>();
-        elements.resize(count);
-        return elements;
+        return backend_.buffer(runtime_.object(buffer)).template download<T>(count);
     };
     const VplCounts& counts = runtime_.value(vpls.counts);
     VplReport report{.requested = configuration_.vpls.count,
@@ -107,7 +105,7 @@ VplReport Renderer::State::report_vpls(const Vpls& vpls, const ViewHandles& view
 
 std::uint32_t Renderer::State::count_filled(const ViewHandles& view) const {
     if (!view.indirect) return 0;
-    return backend_.buffer(runtime_.object(view.indirect->fill_list)).download<std::uint32_t>().at(3);
+    return backend_.buffer(runtime_.object(view.indirect->fill_list)).download<std::uint32_t>(4).at(3);
 }
 
 std::optional<double> Renderer::State::estimate_error(const ViewHandles& view) const {
@@ -130,8 +128,8 @@ LightReport Renderer::State::report_lights(const ViewHandles& view) const {
     report.without_map = shadows.by_rays;
     if (!view.lists) return report;
     const LightBins& bins = runtime_.value(view.lists->bins);
-    auto counts = backend_.buffer(runtime_.object(view.lists->count)).download<std::uint32_t>();
-    counts.resize(bins.grid.cells());
+    const auto counts =
+        backend_.buffer(runtime_.object(view.lists->count)).download<std::uint32_t>(bins.grid.cells());
     report.global = bins.global_count;
     report.tile_max = bins.global_count + *std::ranges::max_element(counts);
     report.tile_mean =

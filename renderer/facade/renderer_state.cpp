@@ -399,8 +399,8 @@ ResultBuffer Renderer::State::received_light_buffer() const {
 std::vector<glm::vec3> Renderer::State::received_light() const {
     if (!frame_.received) return std::vector<glm::vec3>(received_);
     gpu_.require_context();
-    const auto elements = backend_.buffer(runtime_.object(*frame_.received)).download<glm::vec4>();
-    return {elements.begin(), elements.begin() + received_};
+    const auto elements = backend_.buffer(runtime_.object(*frame_.received)).download<glm::vec4>(received_);
+    return {elements.begin(), elements.end()};
 }
 
 /// Frame budget in milliseconds; 0: no limit.

@@ -85,13 +85,18 @@ class Buffer : public Object {
         write(std::as_bytes(std::span<const T>(&value, 1)), offset);
     }
 
-    /// Reads back the whole content, after all GPU commands issued so far; waits for the GPU. A remainder
-    /// smaller than one T is left out. For tests and reports.
+    /// Reads back the first `count` elements, of which there must be so many, after all GPU commands issued
+    /// so far; waits for the GPU. For tests and reports.
+    template <Plain T>
+    [[nodiscard]] std::vector<T> download(std::size_t count) const {
+        std::vector<T> content(count);
+        if (count > 0) read_buffer(gl(), name(), std::as_writable_bytes(std::span<T>(content)));
+        return content;
+    }
+    /// The whole content. A remainder smaller than one T is left out.
     template <Plain T>
     [[nodiscard]] std::vector<T> download() const {
-        std::vector<T> content(static_cast<std::size_t>(bytes() / sizeof(T)));
-        read_buffer(gl(), name(), std::as_writable_bytes(std::span<T>(content)));
-        return content;
+        return download<T>(static_cast<std::size_t>(bytes() / sizeof(T)));
     }
 
     /// Binds the whole buffer to an indexed target: GL_SHADER_STORAGE_BUFFER or GL_UNIFORM_BUFFER.

@@ -1,8 +1,8 @@
-// Culls the light lists of clusters: screen tiles divided into depth slices. One invocation per cluster.
+// Culls the light lists of clusters: screen tiles divided into depth slices.
 #include "lights/light_cull.glsl"
 
 void main() {
-    uint index = gl_GlobalInvocationID.x;
+    uint index = cell_here();
     if (index >= grid.tiles.x * grid.tiles.y * grid.slices) return;
     uint row = index / grid.tiles.x;
     uvec2 tile = uvec2(index % grid.tiles.x, row % grid.tiles.y);

@@ -1,4 +1,5 @@
-// Culls the light list of a cell in place: lights that reach the cell are kept, in their order. One invocation per cell.
+// Culls the light list of a cell in place: lights that reach the cell are kept, in their order. One invocation per cell, or
+// with GROUP_A_CELL one work group.
 #include "bindings.glsl"
 #include "lights/light_cells.glsl"
 #include "lights/lights.glsl"
@@ -6,7 +7,7 @@
 #include "view/view.glsl"
 #include "loop_part.glsl"
 
-layout(local_size_x = 64) in;
+layout(local_size_x = CULL_GROUP) in;
 
 layout(std430, binding = BINDING_LIST_FIRST) readonly restrict buffer ListFirst { uint list_first[]; };
 layout(std430, binding = BINDING_LIST_COUNT) restrict buffer ListCount { uint list_count[]; };
@@ -88,6 +89,50 @@ bool reaches(Light light, Cell cell) {
     return !outside_cone(box, centre, axis, cos_cone);
 }
 
+#ifdef GROUP_A_CELL
+
+uint cell_here() { return gl_WorkGroupID.y * gl_NumWorkGroups.x + gl_WorkGroupID.x; }
+
+shared uint reaching[CULL_GROUP / 32u];  // a bit for each invocation
+
+// Number of invocations before the first `lanes` ones whose light reaches the cell.
+uint reaching_before(uint lanes) {
+    uint count = 0u;
+    for (uint i = 0u; 32u * i < lanes; ++i) {
+        uint here = lanes - 32u * i;
+        count += uint(bitCount(here < 32u ? reaching[i] & ((1u << here) - 1u) : reaching[i]));
+    }
+    return count;
+}
+
+// Tests as many entries of list `index` at a time as there are invocations.
+void cull(uint index, Cell cell) {
+    uint lane = gl_LocalInvocationID.x;
+    uint first = list_first[index];
+    uint end = list_first[index + 1u];
+    uint kept = first;
+    for (uint i = first; i < end; i += CULL_GROUP) {
+        uint light = list_entries[min(i + lane, end - 1u)];
+        bool is_kept = i + lane < end && reaches(lights[light], cell);
+        if (lane < CULL_GROUP / 32u) reaching[lane] = 0u;
+        memoryBarrierShared();
+        barrier();
+        if (is_kept) atomicOr(reaching[lane / 32u], 1u << (lane % 32u));
+        memoryBarrierShared();
+        barrier();
+        // No later turn reads these places.
+        if (is_kept) list_entries[kept + reaching_before(lane)] = light;
+        kept += reaching_before(CULL_GROUP);
+        memoryBarrierShared();
+        barrier();
+    }
+    if (lane == 0u) list_count[index] = kept - first;
+}
+
+#else
+
+uint cell_here() { return gl_GlobalInvocationID.x; }
+
 // Tests the entries of list `index` in this part of the loop. Those that reach the cell are moved behind the entries
 // that earlier dispatches kept.
 void cull(uint index, Cell cell) {
@@ -101,3 +146,5 @@ void cull(uint index, Cell cell) {
     }
     list_count[index] = kept - first;
 }
+
+#endif

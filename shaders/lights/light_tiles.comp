@@ -1,5 +1,4 @@
-// Culls the light lists of screen tiles, with `has_depth` against the depths of the tile's surfaces. One invocation a
-// tile.
+// Culls the light lists of screen tiles, with `has_depth` against the depths of the tile's surfaces.
 #include "lights/light_cull.glsl"
 
 layout(std430, binding = BINDING_TILE_DEPTHS) readonly restrict buffer TileDepths { TileDepth tile_depths[]; };
@@ -7,7 +6,7 @@ layout(std430, binding = BINDING_TILE_DEPTHS) readonly restrict buffer TileDepth
 uniform bool has_depth;
 
 void main() {
-    uint index = gl_GlobalInvocationID.x;
+    uint index = cell_here();
     if (index >= grid.tiles.x * grid.tiles.y) return;
     uvec2 tile = uvec2(index % grid.tiles.x, index / grid.tiles.x);
     TileDepth bounds = TileDepth(view.orthographic != 0u ? -1.0e30 : 0.0, 1.0e30, 0xffffffffu, 0u);

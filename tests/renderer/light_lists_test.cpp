@@ -10,6 +10,8 @@
 #include <vector>
 
 #include <candela/scene/hierarchy.hpp>
+#include "renderer/facade/device_of.hpp"
+#include "shaders/bindings.glsl"
 #include "tests/renderer/path_fixture.hpp"
 
 TEST_SUITE("light lists") {
@@ -115,6 +117,44 @@ TEST_CASE_FIXTURE(PathFixture, "lists bounded by depth contain few lights that r
     CHECK(bound <= 3.0 * lit);
     CHECK(bound < unbound);
     CHECK(listed(ShadingPath::tiled_deferred) == bound);
+}
+
+TEST_CASE_FIXTURE(PathFixture, "where a work group culls a tile's list, it is the same list") {
+    const Scene scene = shipped_scene("hall-256");
+    constexpr glm::uvec2 size{80, 60};
+    struct Shown {
+        Picture picture;
+        double mean = 0.0;
+        std::uint32_t longest = 0;
+    };
+    const auto show = [&](ShadingPath path) {
+        Configuration configuration = direct_only();
+        configuration.path = path;
+        configuration.lists.tile_size = 32;  // lists are longer than a work group
+        configure(configuration);
+        renderer.invalidate();
+        Picture picture = render(scene, size);
+        const LightReport lights = renderer.report().lights;
+        return Shown{std::move(picture), lights.tile_mean, lights.tile_max};
+    };
+    std::vector<Shown> shown;
+    for (const bool software : {true, false}) {
+        gl::Limits limits = device_of(renderer).limits();
+        limits.software = software;
+        device_of(renderer).pretend(limits);
+        for (const ShadingPath path : {ShadingPath::tiled_deferred, ShadingPath::tiled_forward}) {
+            shown.push_back(show(path));
+        }
+    }
+    for (const std::size_t i : {0U, 1U}) {
+        const Shown& one_by_one = shown[i];
+        const Shown& by_groups = shown[i + 2];
+        REQUIRE(one_by_one.longest > CULL_GROUP);
+        CHECK(by_groups.mean == one_by_one.mean);
+        CHECK(by_groups.longest == one_by_one.longest);
+        // Sums follow the order of the lists; a GPU's variants of the shaders may round differently.
+        CHECK(worst_error(by_groups.picture, one_by_one.picture, 1e-3) < 1e-4);
+    }
 }
 
 }  // TEST_SUITE("light lists")

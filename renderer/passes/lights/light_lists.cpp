@@ -12,8 +12,6 @@
 namespace candela {
 namespace {
 
-constexpr std::uint32_t cells_a_group = 64;  // as in shaders/lights/light_cull.glsl
-
 gpu::CellConstants cell_constants(const CellGrid& grid) {
     return {.tiles = grid.tiles,
             .target_size = grid.size,
@@ -79,11 +77,27 @@ BinBuffers add_light_bins(FrameGraph& graph, const Gpu& gpu, std::string_view na
         graph, gpu, name, inputs, [](Pass&) {}, [](Execution&) { return true; });
 }
 
+/// What culls the lists of one kind.
+struct Culling {
+    const gl::Program& program;
+    bool by_groups;  // a work group each list; else an invocation
+};
+
+/// Lists of clusters are short, and there are many of them.
+Culling culling_of(Gpu& gpu, LightList kind) {
+    if (kind == LightList::cluster) return {gpu.program({"lights/light_clusters.comp"}), false};
+    if (gpu.device().limits().software) return {gpu.program({"lights/light_tiles.comp"}), false};
+    return {gpu.program({"lights/light_tiles.comp"}, {"GROUP_A_CELL"}), true};
+}
+
 /// Culls in the dispatches of loop_parts.
-void cull(const Gpu& gpu, const gl::Program& program, const LightBins& bins, const gl::Uniforms& uniforms) {
+void cull(const Gpu& gpu, const Culling& culling, const LightBins& bins, const gl::Uniforms& uniforms) {
+    const CellGrid& grid = bins.grid;
+    const Groups all =
+        culling.by_groups ? Groups{grid.tiles.x, grid.tiles.y} : Groups{groups(grid.cells(), CULL_GROUP)};
     ComputeSteps steps(gpu);
     for (const gl::Uniforms& part : loop_parts(gpu.device().limits(), bins.longest(), 2)) {
-        steps.run(program, {groups(bins.grid.cells(), cells_a_group)}, uniforms + part);
+        steps.run(culling.program, all, uniforms + part);
     }
 }
 
@@ -105,8 +119,7 @@ LightLists add_culling(FrameGraph& graph, Gpu& gpu, std::string_view name, Light
         pass.read(inputs.lights.buffer, {Usage::storage, BINDING_LIGHTS});
         pass.read(bins.first, {Usage::storage, BINDING_LIST_FIRST});
         if (depths) pass.read(*depths, {Usage::storage, BINDING_TILE_DEPTHS});
-        const gl::Program& program =
-            gpu.program({kind == LightList::tile ? "lights/light_tiles.comp" : "lights/light_clusters.comp"});
+        const Culling culling = culling_of(gpu, kind);
         const LightLists out{
             .kind = kind,
             .inputs = inputs,
@@ -116,11 +129,11 @@ LightLists add_culling(FrameGraph& graph, Gpu& gpu, std::string_view name, Light
                                 {Usage::storage, BINDING_LIST_COUNT}),
             .entries = pass.write(bins.entries, {Usage::storage, BINDING_LIST_ENTRIES})};
         graph.note(out.count, ListLengths{inputs.grid.cells});
-        pass.run([=, &gpu, &program, bounded = depths.has_value()](Execution& run) {
+        pass.run([=, &gpu, bounded = depths.has_value()](Execution& run) {
             const LightBins& binned = run.value(out.bins);
             run.reserve(out.count, binned.grid.cells());
             const bool is_tile = kind == LightList::tile;
-            cull(gpu, program, binned, is_tile ? gl::Uniforms{{"has_depth", bounded}} : gl::Uniforms{});
+            cull(gpu, culling, binned, is_tile ? gl::Uniforms{{"has_depth", bounded}} : gl::Uniforms{});
         });
         return out;
     });
