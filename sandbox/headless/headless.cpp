@@ -25,6 +25,10 @@ GraphFormat graph_format(const fs::path& path) {
     return extension == ".json" ? GraphFormat::json : GraphFormat::text;
 }
 
+void require_none(const std::vector<std::string>& errors) {
+    if (!errors.empty()) throw std::runtime_error(fmt::format("{}", fmt::join(errors, "; ")));
+}
+
 }  // namespace
 
 std::optional<fs::path> picture_path(const Options& options) {
@@ -36,16 +40,14 @@ int frames_of(const Options& options, const Scene& scene) {
     return options.frames.value_or(scene.animation ? scene.animation->script().frames : 1);
 }
 
-void apply(Renderer& renderer, const Configuration& configuration) {
-    const std::vector<std::string> errors = renderer.configure(configuration);
-    if (!errors.empty()) throw std::runtime_error(fmt::format("{}", fmt::join(errors, "; ")));
-}
-
 ExitStatus run_headless(const HeadlessContext& context, Scene& scene, Entity camera,
                         const Configuration& configuration, const Options& options, glm::ivec2 size) {
     Renderer renderer(context.get_proc(), {.shader_directory = options.shaders.value_or(fs::path()).string(),
-                                           .log = print_message});
-    apply(renderer, configuration);
+                                           .log = print_message,
+                                           .keeps_gl_state = false});
+    // What is compiled is what the scene needs.
+    const RenderView view{.camera = camera, .target = {.framebuffer = 0, .size = glm::uvec2(size)}};
+    require_none(renderer.prepare(configuration, scene.world, {&view, 1}));
     tools::Capture capture(renderer, context.get_proc(), size);
     const std::optional<fs::path> out = picture_path(options);
     const int frames = frames_of(options, scene);
@@ -58,7 +60,7 @@ ExitStatus run_headless(const HeadlessContext& context, Scene& scene, Entity cam
     const auto goes_on = [&] { return !signals.received(); };
     int frame = 0;
     for (bool is_last = false; !is_last; ++frame) {
-        apply(renderer, budget.limited(configuration));
+        require_none(renderer.configure(budget.limited(configuration)));
         if (scene.animation) scene.animation->apply(scene.world, frame);
         clips.advance(scene.world, frame == 0 ? 0.0 : seconds_a_frame);
         tools::CaptureReport captured;
@@ -92,7 +94,7 @@ tools::Picture whole_picture(Renderer& renderer, tools::Capture& capture, const 
     Configuration whole = renderer.configuration();
     whole.frame_budget_ms = 0.0F;
     whole.vpls.updates = 0;
-    apply(renderer, whole);
+    require_none(renderer.configure(whole));
     return capture.render(world, camera, samples);
 }
 

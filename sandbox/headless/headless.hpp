@@ -35,9 +35,6 @@ void write_report(const Options& options, const tools::RunReport& report);
 /// Writes --describe-graph if it is asked for.
 void write_graph(const Options& options, const Renderer& renderer);
 
-/// Sets a configuration, which must be valid, on a new renderer. Throws std::runtime_error.
-void apply(Renderer& renderer, const Configuration& configuration);
-
 /// Like Capture::render, but at full quality, whatever the frame budget is, and with all surfels traced. The
 /// renderer has no limits from then on.
 [[nodiscard]] tools::Picture whole_picture(Renderer& renderer, tools::Capture& capture, const World& world,

@@ -143,7 +143,7 @@ std::optional<RenderedFrame> FrameRenderer::render_request(Slot& slot, const Fra
     size_ = refines_ || request_->whole ? request_->size : first_size(request_->size, last_);
     if (wanted != renderer_->configuration() && errors_.empty()) {
         if (needs_compiling()) graph_.reset();
-        errors_ = renderer_->configure(wanted);
+        errors_ = configure(slot.picture, wanted);
     }
     RenderedFrame frame;
     if (request_->inspection != inspector_->shown()) {
@@ -194,14 +194,27 @@ void FrameRenderer::fit(tools::Canvas& canvas, glm::uvec2 size) {
         canvas = tools::Canvas(device_, size, Format::rgba8);
 }
 
-bool FrameRenderer::draw(Renderer& renderer, tools::Canvas& canvas, const FrameOptions& options) {
+RenderView FrameRenderer::view_on(tools::Canvas& canvas) {
     fit(canvas, size_);
-    const RenderView view{
-        .camera = request_->camera,
-        .target = canvas.target(),
-        .keep = {.radiance = request_->read_radiance || request_->probe || estimates_noise(),
-                 .vpls = request_->read_vpls},
-        .estimate_error = request_->estimate_error};
+    return {.camera = request_->camera,
+            .target = canvas.target(),
+            .keep = {.radiance = request_->read_radiance || request_->probe || estimates_noise(),
+                     .vpls = request_->read_vpls},
+            .estimate_error = request_->estimate_error};
+}
+
+/// Before the first frame nothing is compiled but what the world needs.
+std::vector<std::string> FrameRenderer::configure(tools::Canvas& canvas, const Configuration& wanted) {
+    if (!has_rendered_) {
+        const RenderView view = view_on(canvas);
+        std::vector<std::string> errors = renderer_->prepare(wanted, *request_->world, {&view, 1});
+        if (!errors.empty()) return errors;
+    }
+    return renderer_->configure(wanted);
+}
+
+bool FrameRenderer::draw(Renderer& renderer, tools::Canvas& canvas, const FrameOptions& options) {
+    const RenderView view = view_on(canvas);
     return renderer.render(*request_->world, std::span(&view, 1), options);
 }
 

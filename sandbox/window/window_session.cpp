@@ -41,7 +41,8 @@ WindowSession::WindowSession(Window& window, const OpenScene& open, const Chosen
     thread_ = std::make_unique<RenderThread>(
         window.share(),
         RendererOptions{.shader_directory = options.shaders.value_or(std::filesystem::path()).string(),
-                        .log = [this](std::string_view line) { warnings_.add(line); }},
+                        .log = [this](std::string_view line) { warnings_.add(line); },
+                        .keeps_gl_state = false},
         Window::wake);
 }
 

@@ -7,11 +7,15 @@
 #include <cstddef>
 #include <cstdint>
 #include <numeric>
+#include <set>
+#include <string>
 #include <string_view>
 #include <type_traits>
+#include <vector>
 
 #include "renderer/facade/device_of.hpp"
 #include "renderer/gl/functions.hpp"
+#include "tests/renderer/recorded_programs.hpp"
 #include "tests/renderer/scene_builder.hpp"
 
 TEST_SUITE("GL calls") {
@@ -37,6 +41,8 @@ struct Chain {
     bool waits = true;         ///< the next work is a new step
 };
 Chain chain;
+
+std::set<GLuint> used_programs;
 
 void note_dispatch(std::uint64_t groups);
 
@@ -68,6 +74,7 @@ struct Counted<index, Result(APIENTRY*)(Arguments...)> {
     static Result APIENTRY call(Arguments... arguments) {
         ++calls[index];
         note(index, groups_of(arguments...));
+        if constexpr (index == of_UseProgram) (used_programs.insert(arguments), ...);
         return driver(arguments...);
     }
 };
@@ -141,6 +148,27 @@ class GlCalls : public GlFixture {
         return chain;
     }
 
+    /// Labels of the programs that are compiled for a scene, but used by none of its first frames.
+    std::vector<std::string> unused(Scene scene, const Configuration& configuration) {
+        static_cast<void>(RecordedPrograms::take());
+        used_programs.clear();
+        Renderer renderer(counting(RecordedPrograms::recording(context->get_proc())));
+        const RenderTarget target(device, {64, 48});
+        const RenderView view{.camera = scene.camera, .target = target.target()};
+        REQUIRE(renderer.prepare(configuration, scene.world, {&view, 1}).empty());
+        REQUIRE(renderer.configure(configuration).empty());
+        for (int frame = 0; frame < 3; ++frame) {
+            scene.world.edit<Transform>(scene.camera,
+                                        [](Transform& pose) { pose.translation.x += 0.01F; });
+            renderer.render(scene.world, scene.camera, target.target());
+        }
+        std::vector<std::string> labels;
+        for (const RecordedProgram& program : RecordedPrograms::take()) {
+            if (!used_programs.contains(program.name)) labels.push_back(program.label);
+        }
+        return labels;
+    }
+
     Picture picture;  ///< of the last frame
 };
 
@@ -165,6 +193,20 @@ TEST_CASE_FIXTURE(GlCalls, "a light that moves is a short chain of work, of whic
     // A GPU takes some microseconds from a step to the next.
     CHECK(chain_of_light.steps <= 20);
     CHECK(chain_of_light.small_dispatches <= 15);
+}
+
+TEST_CASE_FIXTURE(GlCalls, "nothing is compiled that no frame uses") {
+    // What objects, lights and panes need that come or move later, without a wait for the compiler.
+    const std::set<std::string> of_later_frames{
+        "surfels/surfel_kept.comp", "shading/add_part.comp",
+        "lights/shadow_maps.vert and lights/shadow_maps.geom and lights/shadow_maps.frag"};
+    for (const char* const name : {"cornell", "house", "helmet", "glass", "hall-256", "court", "lamp"}) {
+        CAPTURE(name);
+        for (const std::string& label : unused(shipped_scene(name), Configuration{})) {
+            CAPTURE(label);
+            CHECK(of_later_frames.contains(label));
+        }
+    }
 }
 
 }  // TEST_SUITE("GL calls")
