@@ -86,12 +86,6 @@ std::optional<std::size_t> parse_index(const std::string& text) {
     return whole ? std::optional(index) : std::nullopt;
 }
 
-fs::path shipped_file(const std::string& folder, const std::string& name) {
-    std::error_code ignored;
-    const fs::path beside = fs::read_symlink("/proc/self/exe", ignored).parent_path() / folder / name;
-    return fs::exists(beside, ignored) ? beside : fs::path(CANDELA_SHIPPED) / folder / name;
-}
-
 bool is_shipped(const std::string& folder, const fs::path& file) {
     std::error_code ignored;
     return fs::equivalent(file, shipped_file(folder, file.filename().string()), ignored);

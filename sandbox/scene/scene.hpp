@@ -11,6 +11,7 @@
 #include <candela/ecs/world.hpp>
 #include <candela/scene/gltf.hpp>
 #include "sandbox/animation/animation.hpp"
+#include "sandbox/files/shipped_file.hpp"
 
 namespace candela {
 struct Box;
@@ -32,10 +33,6 @@ struct Scene {
 
 /// The file of the animation script, if there is one.
 [[nodiscard]] std::optional<std::string> animation_of(const Scene& scene);
-
-/// A file in a folder that is shipped with the app, "scenes" or "animations": next to the executable, or, if
-/// there is none, in the source tree.
-[[nodiscard]] std::filesystem::path shipped_file(const std::string& folder, const std::string& name);
 
 /// Whether the file is one of those that shipped_file finds.
 [[nodiscard]] bool is_shipped(const std::string& folder, const std::filesystem::path& file);

@@ -11,6 +11,8 @@
 #include <system_error>
 #include <type_traits>
 
+#include "sandbox/files/shipped_file.hpp"
+
 namespace candela::sandbox {
 
 namespace {
@@ -26,8 +28,9 @@ void load_font(float pixels) {
     ImFontAtlas* fonts = ImGui::GetIO().Fonts;
     fonts->Clear();
     std::error_code ignored;
-    if (std::filesystem::exists(CANDELA_FONT, ignored) &&
-        fonts->AddFontFromFileTTF(CANDELA_FONT, pixels, nullptr, letters.data()) != nullptr) {
+    const std::filesystem::path font = shipped_file("", "DejaVuSans.ttf");
+    if (std::filesystem::exists(font, ignored) &&
+        fonts->AddFontFromFileTTF(font.c_str(), pixels, nullptr, letters.data()) != nullptr) {
         return;
     }
     ImFontConfig config;

@@ -42,7 +42,7 @@ namespace {
 
 namespace fs = std::filesystem;
 
-const fs::path table_file = fs::path(__FILE__).parent_path() / "table.txt";
+const fs::path table_file = CANDELA_BUDGETS;
 
 std::vector<std::string> shipped_scenes() {
     std::vector<std::string> names;

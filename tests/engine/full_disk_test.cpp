@@ -6,6 +6,7 @@
 
 #include <doctest/doctest.h>
 
+#include "sandbox/files/shipped_file.hpp"
 #include "tests/engine/saved_world.hpp"
 
 TEST_SUITE("glTF export") {
@@ -38,8 +39,7 @@ class FullDisk {
 }  // namespace
 
 TEST_CASE("a full disk leaves the files as they were") {
-    const std::filesystem::path scenes =
-        std::filesystem::path(__FILE__).parent_path().parent_path().parent_path() / "sandbox/scenes";
+    const std::filesystem::path scenes = sandbox::shipped_file("scenes", "");
     const TemporaryDirectory folder;
     static_cast<void>(export_gltf(imported(scenes / "corner.gltf"), folder / "a.gltf"));
     const auto before = files_of(folder / "");

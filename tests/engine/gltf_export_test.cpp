@@ -22,6 +22,7 @@
 #include <candela/scene/deformed_mesh.hpp>
 #include <candela/scene/gltf.hpp>
 #include <candela/scene/tangents.hpp>
+#include "sandbox/files/shipped_file.hpp"
 #include "tests/engine/gltf_builder.hpp"
 #include "tests/engine/saved_world.hpp"
 #include "tests/engine/world_difference.hpp"
@@ -37,7 +38,7 @@ namespace {
 constexpr Entity first_entity{0, 1};  // of any world
 constexpr float infinity = std::numeric_limits<float>::infinity();
 
-const fs::path scenes = fs::path(__FILE__).parent_path().parent_path().parent_path() / "sandbox/scenes";
+const fs::path scenes = sandbox::shipped_file("scenes", "");
 
 /// A triangle of any material.
 std::shared_ptr<const Mesh> triangle(std::shared_ptr<const Material> material) {

@@ -7,6 +7,7 @@
 #include <glm/geometric.hpp>
 
 #include <candela/scene/hierarchy.hpp>
+#include "sandbox/files/shipped_file.hpp"
 #include "tests/engine/gltf_builder.hpp"
 
 using namespace candela;
@@ -14,9 +15,7 @@ using namespace candela::test;
 
 namespace {
 
-// The shipped scenes are found relative to this source file.
-const std::filesystem::path scenes =
-    std::filesystem::path(__FILE__).parent_path() / ".." / ".." / "sandbox" / "scenes";
+const std::filesystem::path scenes = sandbox::shipped_file("scenes", "");
 
 /// Triangle of a mesh instance in the world.
 struct WorldTriangle {

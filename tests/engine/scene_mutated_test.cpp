@@ -4,6 +4,7 @@
 #include <cstddef>
 #include <random>
 
+#include "sandbox/files/shipped_file.hpp"
 #include "tests/engine/malformed_gltf.hpp"
 #include "tests/engine/moving_gltf.hpp"
 #include "tests/seed.hpp"
@@ -15,8 +16,7 @@ using namespace candela::test;
 
 namespace {
 
-const std::filesystem::path cornell =
-    std::filesystem::path(__FILE__).parent_path() / ".." / ".." / "sandbox" / "scenes" / "cornell.gltf";
+const std::filesystem::path cornell = sandbox::shipped_file("scenes", "cornell.gltf");
 
 Bytes read(const std::filesystem::path& path) {
     std::ifstream file(path, std::ios::binary);

@@ -16,6 +16,7 @@
 #include <glm/geometric.hpp>
 
 #include "engine/bvh/box.hpp"
+#include "sandbox/files/shipped_file.hpp"
 #include "tests/engine/gltf_builder.hpp"
 #include "tests/engine/scene_probe.hpp"
 
@@ -28,7 +29,7 @@ namespace fs = std::filesystem;
 namespace {
 
 fs::path scenes() {
-    return fs::path(__FILE__).parent_path().parent_path().parent_path() / "sandbox/scenes";
+    return sandbox::shipped_file("scenes", "");
 }
 
 fs::path shipped(const std::string& name) {

@@ -10,6 +10,7 @@
 #include <tiny_gltf.h>
 
 #include <candela/scene/gltf.hpp>
+#include "sandbox/files/shipped_file.hpp"
 
 TEST_SUITE("glTF and TinyGLTF") {
 
@@ -20,8 +21,7 @@ namespace {
 
 std::vector<fs::path> shipped_scenes() {
     std::vector<fs::path> files;
-    for (const fs::directory_entry& file : fs::directory_iterator(
-             fs::path(__FILE__).parent_path().parent_path().parent_path() / "sandbox/scenes")) {
+    for (const fs::directory_entry& file : fs::directory_iterator(sandbox::shipped_file("scenes", ""))) {
         if (file.path().extension() == ".gltf") files.push_back(file.path());
     }
     return files;

@@ -14,6 +14,7 @@
 #include <vector>
 
 #include <candela/settings.hpp>
+#include "sandbox/files/shipped_file.hpp"
 #include "tests/renderer/scene_builder.hpp"
 
 TEST_SUITE("configuration") {
@@ -81,7 +82,7 @@ std::string row_of(const Setting& setting, const T& value) {
 
 TEST_CASE("the README lists all settings, with their values, defaults and meanings") {
     std::stringstream text;
-    text << std::ifstream(CANDELA_README).rdbuf();
+    text << std::ifstream(sandbox::shipped_file("", "README.md")).rdbuf();
     std::string rows = "| setting | flag | values | default | meaning |\n|---|---|---|---|---|\n";
     const Configuration defaults;
     for_each_setting(defaults,

@@ -8,13 +8,13 @@
 #include <string>
 
 #include <candela/scene/gltf.hpp>
+#include "sandbox/files/shipped_file.hpp"
 
 namespace candela {
 
 Scene shipped_scene(std::string_view name) {
-    const auto root = std::filesystem::path(__FILE__).parent_path().parent_path().parent_path();
     Scene scene;
-    import_gltf(root / "sandbox/scenes" / (std::string(name) + ".gltf"), scene.world);
+    import_gltf(sandbox::shipped_file("scenes", std::string(name) + ".gltf"), scene.world);
     for (const auto& [entity, camera] : scene.world.view<Camera>()) {
         scene.camera = entity;
     }

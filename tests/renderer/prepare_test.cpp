@@ -12,6 +12,7 @@
 #include <vector>
 
 #include "renderer/facade/device_of.hpp"
+#include "sandbox/files/shipped_file.hpp"
 #include "tests/compilations.hpp"
 #include "tests/renderer/scene_builder.hpp"
 #include "tests/sandbox/temporary_folder.hpp"
@@ -73,7 +74,7 @@ Scene empty_scene() {
 /// A copy of the shaders in which one can be made faulty.
 class ShaderCopy {
  public:
-    ShaderCopy() { std::filesystem::copy(CANDELA_SHADERS, path(), recursive); }
+    ShaderCopy() { std::filesystem::copy(sandbox::shipped_file("shaders", ""), path(), recursive); }
 
     [[nodiscard]] std::filesystem::path path() const { return folder_ / "shaders"; }
     /// Adds a line at the end of a file. Returns its number.
@@ -84,7 +85,7 @@ class ShaderCopy {
         return static_cast<std::size_t>(lines) + 1;
     }
     void restore(const char* file) const {
-        std::filesystem::copy(std::filesystem::path(CANDELA_SHADERS) / file, path() / file,
+        std::filesystem::copy(sandbox::shipped_file("shaders", file), path() / file,
                               std::filesystem::copy_options::overwrite_existing);
     }
 

@@ -7,6 +7,7 @@
 #include <vector>
 
 #include "renderer/facade/device_of.hpp"
+#include "sandbox/files/shipped_file.hpp"
 #include "tests/renderer/scene_builder.hpp"
 #include "tests/throws.hpp"
 
@@ -109,7 +110,8 @@ TEST_CASE("with debug output, the log gets each error of the driver once") {
 TEST_CASE("a renderer reads its shaders from the given directory") {
     const auto context = make_current_context();
     CHECK_THROWS_AS(TestedRenderer(context->get_proc(), {.shader_directory = "/nowhere"}), gl::ProgramError);
-    CHECK_NOTHROW(TestedRenderer(context->get_proc(), {.shader_directory = CANDELA_SHADERS}));
+    CHECK_NOTHROW(
+        TestedRenderer(context->get_proc(), {.shader_directory = sandbox::shipped_file("shaders", "")}));
 }
 
 TEST_CASE("a context that does not suffice is one clear error") {

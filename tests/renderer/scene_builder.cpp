@@ -16,6 +16,7 @@
 
 #include <candela/scene/gltf.hpp>
 #include <candela/scene/hierarchy.hpp>
+#include "sandbox/files/shipped_file.hpp"
 
 namespace candela {
 namespace {
@@ -157,10 +158,8 @@ Transform at(glm::vec3 position) {
 }
 
 Scene cornell_box() {
-    const auto path = std::filesystem::path(__FILE__).parent_path().parent_path().parent_path() /
-                      "sandbox/scenes/cornell.gltf";
     Scene scene;
-    import_gltf(path, scene.world);
+    import_gltf(sandbox::shipped_file("scenes", "cornell.gltf"), scene.world);
     for (const auto& [entity, camera] : scene.world.view<Camera>()) {
         scene.camera = entity;
     }

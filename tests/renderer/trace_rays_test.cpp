@@ -14,6 +14,7 @@
 #include <candela/graph/execute.hpp>
 #include "renderer/gl/graph_backend.hpp"
 #include "renderer/passes/scene/bvh.hpp"
+#include "sandbox/files/shipped_file.hpp"
 #include "tests/renderer/scene_builder.hpp"
 #include "tests/seed.hpp"
 
@@ -39,7 +40,7 @@ struct GpuHit {
 };
 
 std::string trace_rays_source() {
-    std::ifstream file(std::filesystem::path(__FILE__).parent_path() / "trace_rays.comp");
+    std::ifstream file(sandbox::shipped_file("", "trace_rays.comp"));
     return {std::istreambuf_iterator<char>(file), {}};
 }
 

@@ -8,6 +8,7 @@
 #include <filesystem>
 
 #include <candela/tools/output_file.hpp>
+#include "sandbox/files/shipped_file.hpp"
 
 namespace candela::sandbox {
 
@@ -32,7 +33,7 @@ struct Files {
     fs::path out = folder / "out.pfm";
 
     Files() {
-        fs::copy(CANDELA_SHADERS, folder / "shaders", fs::copy_options::recursive);
+        fs::copy(shipped_file("shaders", ""), folder / "shaders", fs::copy_options::recursive);
         save_configuration("deferred", -2);
     }
     void save_configuration(const std::string& path, int exposure_ev) const {
@@ -64,7 +65,7 @@ void drop_scenes(App& app) {
     // Its name needs percent signs in a URI.
     const TextFile note("a note, 100 % \xC3\xA4.txt", "no scene");
     const TextFile broken("broken.gltf", "{\"asset\": {\"version\": \"2.0\"},\n \"scenes\": [}");
-    const fs::path rooms = fs::path(CANDELA_SHIPPED) / "scenes" / "two-rooms.gltf";
+    const fs::path rooms = shipped_file("scenes", "two-rooms.gltf");
     const Shot first = app.settled();
     drop_file(app.display(), app.window(), rooms);
     app.wait_for("the dropped scene",
