@@ -21,7 +21,7 @@ std::vector<glm::vec3> written(float budget_ms) {
     Configuration configuration;
     configuration.vpls.count = 16;
     configuration.frame_budget_ms = budget_ms;
-    apply(renderer, configuration);
+    REQUIRE(renderer.configure(configuration).empty());
     tools::Capture capture(renderer, context->get_proc(), size);
     for (int frame = 0; frame < 4; ++frame) {
         scene.world.edit<Transform>(light, [](Transform& pose) { pose.translation.x += 0.05F; });
@@ -55,7 +55,7 @@ TEST_CASE("a capture that is not to go on is the mean of the samples until then"
     SUBCASE("as the renderer refines it") {
         configuration.refinement.enabled = true;
     }
-    apply(renderer, configuration);
+    REQUIRE(renderer.configure(configuration).empty());
     tools::Capture capture(renderer, context->get_proc(), size);
     int left = 2;
     const tools::Picture stopped =
