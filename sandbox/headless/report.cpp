@@ -25,9 +25,8 @@ std::string pass_table(const FrameReport& frame) {
 }
 
 std::string light_table(const LightReport& lights) {
-    std::string table =
-        fmt::format("lights           {}, {} with a shadow map, {} shadowed by rays alone\n",
-                    lights.count, lights.with_map, lights.without_map);
+    std::string table = fmt::format("lights           {}, {} with a shadow map, {} shadowed by rays alone\n",
+                                    lights.count, lights.with_map, lights.without_map);
     if (lights.tile_max == 0) return table;
     return table + fmt::format("  in a list      {:.1f} in the mean, {} at most; {} in every one\n",
                                lights.tile_mean, lights.tile_max, lights.global);

@@ -65,8 +65,10 @@ TEST_CASE_FIXTURE(RenderFixture,
     round(480, 96);
     CHECK(device_of(renderer).live() == before);
     // Allows for fragmentation by the allocator. A leak of one small object per switch would not show
-    // here, but is counted above. AddressSanitizer delays freeing memory, and finds leaks by itself.
-    if (!test::is_sanitized) CHECK(test::resident_bytes() < memory_before + (4U << 20U));
+    // here, but is counted above. AddressSanitizer delays freeing memory, and finds leaks by itself. What a
+    // GPU's driver keeps in this process is its own affair.
+    if (test::is_sanitized || !device.limits().software) return;
+    CHECK(test::resident_bytes() < memory_before + (4U << 20U));
 }
 
 TEST_CASE_FIXTURE(RenderFixture, "a sky, a sun and a lamp that come and go leak no objects") {

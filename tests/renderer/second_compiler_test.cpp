@@ -199,6 +199,9 @@ TEST_CASE_FIXTURE(GlFixture, "glslang compiles every variant of every program") 
     gl::Limits limits = device_of(renderer).limits();
     limits.software = false;
     device_of(renderer).pretend(limits);
+    const ShadingPath with_clusters = std::exchange(configuration.path, ShadingPath::tiled_deferred);
+    render_with(256);
+    configuration.path = with_clusters;
     render_with(256);
     // And from surfaces of a host's.
     const gl::Texture depth(device, "depth", {{1, 1}, Format::r32f});

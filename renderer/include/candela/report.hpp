@@ -70,7 +70,7 @@ struct VplReport {
 /// Counts of the real lights. Lights that emit nothing are not counted.
 struct LightReport {
     std::uint32_t count = 0;
-    std::uint32_t with_map = 0;   ///< lights that have a shadow map
+    std::uint32_t with_map = 0;      ///< lights that have a shadow map
     std::uint32_t shadow_views = 0;  ///< drawn in the last run of `shadow-maps`: 6 per cube, 1 per flat map
     /// Lights whose shadows take a ray everywhere, because ShadowSettings::budget_mib or the number of layers
     /// leaves no room for a map.
