@@ -83,9 +83,14 @@ std::vector<gl::Uniforms> lighting_parts(const gl::Limits& limits, const Executi
     const auto& lights = run.value(lighting.lights.table).entries;
     const auto casting = static_cast<std::uint64_t>(
         lighting.shadow_rays ? std::ranges::count_if(lights, &LightTable::Entry::casts_shadow) : 0);
-    const bool all_have_rays = casting * surfaces * iterations_a_ray > limits.loop_iterations;
-    return loop_parts(limits, longest_list(run, lighting),
-                      surfaces * (all_have_rays ? iterations_a_ray : iterations_without_ray));
+    // All rays may be in one part. If that leaves too little for the lights without one, any may have a ray.
+    const std::uint64_t rays = casting * surfaces * iterations_a_ray;
+    if (rays > limits.loop_iterations / 8 * 7) {
+        return loop_parts(limits, longest_list(run, lighting), surfaces * iterations_a_ray);
+    }
+    gl::Limits without_rays = limits;
+    without_rays.loop_iterations -= rays;
+    return loop_parts(without_rays, longest_list(run, lighting), surfaces * iterations_without_ray);
 }
 
 }  // namespace candela
