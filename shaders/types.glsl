@@ -96,7 +96,7 @@ struct Shadow {
     mat4 from_world;   // to clip space; unused by cubes
     float depth_scale; // change of depth per change of the inverse distance along the map's axis, metres; orthographic: 0
     uint layer;        // of the map; cubes: index of the Shadow of their first face, whose layer is one of the cubes' array
-    uint kind;         // SHADOW_*: of the map. The light has none: SHADOW_BY_RAYS; it casts no shadow: SHADOW_NONE
+    uint kind;         // of the map; SHADOW_BY_RAYS: there is none; SHADOW_NONE: the light casts no shadow
     float ray_offset;  // metres above a surface, where rays to the light start
 };
 
@@ -352,7 +352,7 @@ struct VplRecord {
     float pad1 DEFAULT(0.0);
 };
 
-// Where the flux of a path, or of all surfels, went. emitted = absorbed + escaped + truncated + roulette, up to
+// Where the flux of a path, of all surfels, or of a class of them (surfel_bounces.comp) went. emitted = absorbed + escaped + truncated + roulette, up to
 // rounding; of surfels also up to the balance of the form factors, and without roulette.
 struct FluxAccount {
     vec3 emitted;  // of surfels: flux of the lights that arrives at the cells, and that the cells emit

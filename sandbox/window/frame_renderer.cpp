@@ -122,7 +122,7 @@ std::optional<RenderedFrame> FrameRenderer::render(std::size_t slot_index, bool 
 std::optional<std::string> FrameRenderer::replace_renderers() {
     try {
         std::unique_ptr<Renderer> renderer = make_renderer();
-        const std::vector<std::string> errors = renderer->configure(renderer_->configuration());
+        const std::vector<std::string> errors = configure_new(*renderer, renderer_->configuration());
         if (!errors.empty()) return errors.front();
         inspector_ = std::make_unique<ResourceInspector>(*renderer);
         renderer_ = std::move(renderer);
@@ -143,7 +143,7 @@ std::optional<RenderedFrame> FrameRenderer::render_request(Slot& slot, const Fra
     size_ = refines_ || request_->whole ? request_->size : first_size(request_->size, last_);
     if (wanted != renderer_->configuration() && errors_.empty()) {
         if (needs_compiling()) graph_.reset();
-        errors_ = configure(slot.picture, wanted);
+        errors_ = has_rendered_ ? renderer_->configure(wanted) : configure_new(*renderer_, wanted);
     }
     RenderedFrame frame;
     if (request_->inspection != inspector_->shown()) {
@@ -194,33 +194,34 @@ void FrameRenderer::fit(tools::Canvas& canvas, glm::uvec2 size) {
         canvas = tools::Canvas(device_, size, Format::rgba8);
 }
 
-RenderView FrameRenderer::view_on(tools::Canvas& canvas) {
-    fit(canvas, size_);
+RenderView FrameRenderer::view_on(const Target& target) const {
     return {.camera = request_->camera,
-            .target = canvas.target(),
+            .target = target,
             .keep = {.radiance = request_->read_radiance || request_->probe || estimates_noise(),
                      .vpls = request_->read_vpls},
             .estimate_error = request_->estimate_error};
 }
 
-/// Before the first frame nothing is compiled but what the world needs.
-std::vector<std::string> FrameRenderer::configure(tools::Canvas& canvas, const Configuration& wanted) {
-    if (!has_rendered_) {
-        const RenderView view = view_on(canvas);
-        std::vector<std::string> errors = renderer_->prepare(wanted, *request_->world, {&view, 1});
-        if (!errors.empty()) return errors;
-    }
-    return renderer_->configure(wanted);
+/// Before its first frame, a renderer compiles what the world needs, and nothing else.
+std::vector<std::string> FrameRenderer::configure_new(Renderer& renderer, const Configuration& wanted) const {
+    const RenderView view = view_on({.framebuffer = 0, .size = request_->size});
+    std::vector<std::string> errors = renderer.prepare(wanted, *request_->world, {&view, 1});
+    return errors.empty() ? renderer.configure(wanted) : errors;
 }
 
 bool FrameRenderer::draw(Renderer& renderer, tools::Canvas& canvas, const FrameOptions& options) {
-    const RenderView view = view_on(canvas);
+    fit(canvas, size_);
+    const RenderView view = view_on(canvas.target());
     return renderer.render(*request_->world, std::span(&view, 1), options);
 }
 
 bool FrameRenderer::draw_other(tools::Canvas& canvas, const FrameOptions& options) {
-    if (!other_) other_ = make_renderer();
-    for (const std::string& error : other_->configure(*request_->other)) errors_.push_back(error);
+    const bool is_new = !other_;
+    if (is_new) other_ = make_renderer();
+    for (const std::string& error :
+         is_new ? configure_new(*other_, *request_->other) : other_->configure(*request_->other)) {
+        errors_.push_back(error);
+    }
     return draw(*other_, canvas, options);
 }
 

@@ -63,8 +63,8 @@ class FrameRenderer {
     std::optional<std::string> replace_renderers();
     std::optional<RenderedFrame> render_request(Slot& slot, const FrameOptions& options);
     void fit(tools::Canvas& canvas, glm::uvec2 size);
-    RenderView view_on(tools::Canvas& canvas);
-    std::vector<std::string> configure(tools::Canvas& canvas, const Configuration& wanted);
+    [[nodiscard]] RenderView view_on(const Target& target) const;
+    std::vector<std::string> configure_new(Renderer& renderer, const Configuration& wanted) const;
     bool draw(Renderer& renderer, tools::Canvas& canvas, const FrameOptions& options);
     bool draw_second(RenderedFrame& frame, Slot& slot, const FrameOptions& options);
     bool draw_other(tools::Canvas& canvas, const FrameOptions& options);

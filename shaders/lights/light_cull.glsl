@@ -11,7 +11,12 @@ layout(local_size_x = CULL_GROUP) in;
 
 layout(std430, binding = BINDING_LIST_FIRST) readonly restrict buffer ListFirst { uint list_first[]; };
 layout(std430, binding = BINDING_LIST_COUNT) restrict buffer ListCount { uint list_count[]; };
-layout(std430, binding = BINDING_LIST_ENTRIES) restrict buffer ListEntries { uint list_entries[]; };
+#ifdef GROUP_A_CELL
+#define OF_THE_GROUP coherent
+#else
+#define OF_THE_GROUP
+#endif
+layout(std430, binding = BINDING_LIST_ENTRIES) OF_THE_GROUP restrict buffer ListEntries { uint list_entries[]; };
 
 // The part of view space that a cell covers: rays between `lower` and `upper` (view-space x and y at depth 1;
 // orthographic: at any depth), between two depths in metres, and there only the slices whose bit is set in the mask.
@@ -115,6 +120,7 @@ void cull(uint index, Cell cell) {
         uint light = list_entries[min(i + lane, end - 1u)];
         bool is_kept = i + lane < end && reaches(lights[light], cell);
         if (lane < CULL_GROUP / 32u) reaching[lane] = 0u;
+        memoryBarrierBuffer();
         memoryBarrierShared();
         barrier();
         if (is_kept) atomicOr(reaching[lane / 32u], 1u << (lane % 32u));

@@ -70,10 +70,7 @@ std::vector<Configuration> configurations() {
 /// The programs of frames of the shipped scenes on a GPU, each once.
 std::vector<RecordedProgram> programs_of_scenes(const gl::GetProc& get_proc) {
     Renderer renderer(RecordedPrograms::recording(get_proc));
-    gl::Limits limits = device_of(renderer).limits();
-    limits.software = false;
-    limits.loop_iterations = gl::Limits{}.loop_iterations;
-    device_of(renderer).pretend(limits);
+    pretend(renderer, false, endless_loops);
     for (const std::string& name : shipped_scenes()) {
         const Scene scene = shipped_scene(name);
         const std::vector<RenderView> views{{.camera = scene.camera, .target = {0, {512, 512}}}};

@@ -27,7 +27,8 @@ fs::path driver_file() {
     const fs::path folder = "/usr/share/vulkan/icd.d";
     if (!fs::exists(folder)) return {};
     for (const fs::directory_entry& file : fs::directory_iterator(folder)) {
-        if (file.path().filename().string().starts_with("radeon_icd")) return file.path();
+        const std::string name = file.path().filename().string();
+        if (name == "radeon_icd.json" || name == "radeon_icd.x86_64.json") return file.path();
     }
     return {};
 }

@@ -34,11 +34,10 @@ std::vector<SpirvStage> to_spirv(const RecordedProgram& program) {
     }
     // All stages at once, so that what one passes to the next gets one location.
     const std::string command = fmt::format(
-        "cd '{}' && {} -V -R --target-env vulkan1.1 --auto-map-locations --auto-map-bindings "
+        "cd '{}' && glslangValidator -V -R --target-env vulkan1.1 --auto-map-locations --auto-map-bindings "
         "--shift-ssbo-binding {} --shift-texture-binding {} --shift-sampler-binding {} "
         "--shift-image-binding {} --set-default-uniform-block loose 1 0 {} > said",
-        (folder / "").string(), CANDELA_GLSLANG, +first_storage_block, +first_texture, +first_texture,
-        +first_image, files);
+        (folder / "").string(), +first_storage_block, +first_texture, +first_texture, +first_image, files);
     if (std::system(command.c_str()) != 0) throw std::runtime_error(contents(folder / "said"));
 
     std::vector<SpirvStage> stages;

@@ -4,7 +4,6 @@
 #include <numbers>
 #include <utility>
 
-#include "renderer/facade/device_of.hpp"
 #include "tests/reference/pictures.hpp"
 #include "tests/renderer/scene_builder.hpp"
 #include "tests/study/measures.hpp"
@@ -113,10 +112,7 @@ TEST_CASE_FIXTURE(ManyShadows, "each light has its ray, however many there are")
 }
 
 TEST_CASE_FIXTURE(ManyShadows, "the same in one draw or dispatch, as on a driver that stops no loops") {
-    gl::Limits limits = device_of(renderer).limits();
-    limits.software = false;
-    limits.loop_iterations = gl::Limits{}.loop_iterations;
-    device_of(renderer).pretend(limits);
+    pretend(renderer, false, endless_loops);
     // A software driver runs through the loops of so many lights at once, of four times as many it does not.
     for (const std::uint32_t spots : {9U, 100U, 512U}) {
         CAPTURE(spots);
@@ -127,6 +123,7 @@ TEST_CASE_FIXTURE(ManyShadows, "the same in one draw or dispatch, as on a driver
 TEST_CASE_FIXTURE(ManyShadows, "rays leave room for the lights that need none") {
     // With its lamp, the roof has seven shadows: on a surface 14,329 iterations, and each other light
     // takes 7. Four surfaces together would be past the 65,535 that software drivers allow.
+    pretend(renderer, true);
     Scene scene = roofed(6);
     add_lamps(scene, 2'300);
     check(scene);
@@ -137,11 +134,10 @@ TEST_CASE_FIXTURE(ManyShadows, "panes are lit by all lights, also if no loop can
     add_lamps(scene, 17'000);
     Configuration configuration = linear_configuration();
     configuration.show = Show::direct;
+    pretend(renderer, true);
     configure(configuration);
     const Picture whole = render(scene, size);
-    gl::Limits limits = device_of(renderer).limits();
-    limits.loop_iterations /= 3;
-    device_of(renderer).pretend(limits);
+    pretend(renderer, true, software_loops / 3);
     renderer.invalidate();
     const Picture in_parts = render(scene, size);
     CHECK(in_parts.pixels != whole.pixels);  // sums in another order

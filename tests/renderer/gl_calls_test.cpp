@@ -13,7 +13,6 @@
 #include <type_traits>
 #include <vector>
 
-#include "renderer/facade/device_of.hpp"
 #include "renderer/gl/functions.hpp"
 #include "tests/renderer/recorded_programs.hpp"
 #include "tests/renderer/scene_builder.hpp"
@@ -133,10 +132,7 @@ class GlCalls : public GlFixture {
     /// Of a frame in which a light has moved, on a GPU.
     Chain of_moved_light(const Configuration& configuration) {
         Renderer renderer(counting(context->get_proc()), RendererOptions{.keeps_gl_state = false});
-        gl::Limits limits = device_of(renderer).limits();
-        limits.software = false;
-        limits.loop_iterations = gl::Limits{}.loop_iterations;
-        device_of(renderer).pretend(limits);
+        pretend(renderer, false, endless_loops);
         REQUIRE(renderer.configure(configuration).empty());
         Scene scene = cornell_box();
         const RenderTarget target(device, {160, 120});
@@ -149,21 +145,23 @@ class GlCalls : public GlFixture {
     }
 
     /// Labels of the programs that are compiled for a scene, but used by none of its first frames.
-    std::vector<std::string> unused(Scene scene, const Configuration& configuration) {
+    std::vector<std::string> unused(Scene scene, bool software) {
         static_cast<void>(RecordedPrograms::take());
         used_programs.clear();
         Renderer renderer(counting(RecordedPrograms::recording(context->get_proc())));
         const RenderTarget target(device, {64, 48});
         const RenderView view{.camera = scene.camera, .target = target.target()};
-        REQUIRE(renderer.prepare(configuration, scene.world, {&view, 1}).empty());
-        REQUIRE(renderer.configure(configuration).empty());
+        pretend(renderer, software);
+        REQUIRE(renderer.prepare(Configuration{}, scene.world, {&view, 1}).empty());
+        REQUIRE(renderer.configure(Configuration{}).empty());
         for (int frame = 0; frame < 3; ++frame) {
-            scene.world.edit<Transform>(scene.camera,
-                                        [](Transform& pose) { pose.translation.x += 0.01F; });
+            scene.world.edit<Transform>(scene.camera, [](Transform& pose) { pose.translation.x += 0.01F; });
             renderer.render(scene.world, scene.camera, target.target());
         }
+        const std::vector<RecordedProgram> programs = RecordedPrograms::take();
+        REQUIRE(programs.size() > 10);
         std::vector<std::string> labels;
-        for (const RecordedProgram& program : RecordedPrograms::take()) {
+        for (const RecordedProgram& program : programs) {
             if (!used_programs.contains(program.name)) labels.push_back(program.label);
         }
         return labels;
@@ -201,10 +199,13 @@ TEST_CASE_FIXTURE(GlCalls, "nothing is compiled that no frame uses") {
         "surfels/surfel_kept.comp", "shading/add_part.comp",
         "lights/shadow_maps.vert and lights/shadow_maps.geom and lights/shadow_maps.frag"};
     for (const char* const name : {"cornell", "house", "helmet", "glass", "hall-256", "court", "lamp"}) {
-        CAPTURE(name);
-        for (const std::string& label : unused(shipped_scene(name), Configuration{})) {
-            CAPTURE(label);
-            CHECK(of_later_frames.contains(label));
+        for (const bool software : {true, false}) {
+            CAPTURE(name);
+            CAPTURE(software);
+            for (const std::string& label : unused(shipped_scene(name), software)) {
+                CAPTURE(label);
+                CHECK(of_later_frames.contains(label));
+            }
         }
     }
 }

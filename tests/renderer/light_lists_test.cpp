@@ -10,7 +10,6 @@
 #include <vector>
 
 #include <candela/scene/hierarchy.hpp>
-#include "renderer/facade/device_of.hpp"
 #include "shaders/bindings.glsl"
 #include "tests/renderer/path_fixture.hpp"
 
@@ -139,9 +138,7 @@ TEST_CASE_FIXTURE(PathFixture, "where a work group culls a tile's list, it is th
     };
     std::vector<Shown> shown;
     for (const bool software : {true, false}) {
-        gl::Limits limits = device_of(renderer).limits();
-        limits.software = software;
-        device_of(renderer).pretend(limits);
+        pretend(renderer, software);
         for (const ShadingPath path : {ShadingPath::tiled_deferred, ShadingPath::tiled_forward}) {
             shown.push_back(show(path));
         }

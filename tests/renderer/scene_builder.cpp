@@ -16,6 +16,7 @@
 
 #include <candela/scene/gltf.hpp>
 #include <candela/scene/hierarchy.hpp>
+#include "renderer/facade/device_of.hpp"
 #include "sandbox/files/shipped_file.hpp"
 
 namespace candela {
@@ -273,6 +274,13 @@ Picture expected_picture(const Scene& scene, glm::uvec2 size, glm::dvec3 point, 
         }
     }
     return picture;
+}
+
+void pretend(Renderer& renderer, bool software, std::uint64_t loop_iterations) {
+    gl::Limits limits = device_of(renderer).limits();
+    limits.software = software;
+    limits.loop_iterations = loop_iterations;
+    device_of(renderer).pretend(limits);
 }
 
 RenderTarget::RenderTarget(gl::Device& device, glm::uvec2 size, Format format)

@@ -100,6 +100,13 @@ struct PixelRay {
                                        glm::dvec3 normal,
                                        const std::function<glm::dvec3(glm::dvec3)>& radiance);
 
+inline constexpr std::uint64_t software_loops = 65'535;  ///< gl::Limits::loop_iterations of software drivers
+inline constexpr std::uint64_t endless_loops = gl::Limits{}.loop_iterations;
+
+/// What is declared from now on is that of a driver on the CPU, or of a GPU's. With the loops of software
+/// drivers, such a driver shows right pictures in both cases.
+void pretend(Renderer& renderer, bool software, std::uint64_t loop_iterations = software_loops);
+
 /// A framebuffer of the host that can be read back.
 class RenderTarget {
  public:

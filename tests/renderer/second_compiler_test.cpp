@@ -123,6 +123,7 @@ void main() { lit = candela_irradiance(vec3(0.0), vec3(0.0, 1.0, 0.0), 0u); })"}
 
 TEST_CASE_FIXTURE(GlFixture, "glslang compiles every variant of every program") {
     TestedRenderer renderer(RecordedPrograms::recording(context->get_proc()));
+    pretend(renderer, true);
     Configuration configuration;
     configuration.refinement.enabled = true;
     REQUIRE(renderer.extend(lighting_points()).empty());
@@ -196,9 +197,7 @@ TEST_CASE_FIXTURE(GlFixture, "glslang compiles every variant of every program") 
     };
     render_with(16);
     render_with(1024);
-    gl::Limits limits = device_of(renderer).limits();
-    limits.software = false;
-    device_of(renderer).pretend(limits);
+    pretend(renderer, false);
     const ShadingPath with_clusters = std::exchange(configuration.path, ShadingPath::tiled_deferred);
     render_with(256);
     configuration.path = with_clusters;
@@ -271,6 +270,10 @@ TEST_CASE_FIXTURE(GlFixture, "glslang compiles every variant of every program") 
     }
     CHECK(most == MOST_STORAGE_BLOCKS);
 
+    if (std::system("command -v glslangValidator > /dev/null") != 0) {
+        MESSAGE("skipped: no glslangValidator, see glslang-tools in .ci/packages");
+        return;
+    }
     const sandbox::TemporaryFolder folder;
     std::string command = "glslangValidator";
     int number = 0;

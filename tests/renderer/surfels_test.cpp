@@ -9,7 +9,6 @@
 #include <glm/gtc/quaternion.hpp>
 #include <limits>
 
-#include "renderer/facade/device_of.hpp"
 #include "shaders/bindings.glsl"
 #include "tests/renderer/path_fixture.hpp"
 #include "tests/renderer/scene_builder.hpp"
@@ -31,13 +30,6 @@ class SurfelTests : public RenderFixture {
         configuration.vpls = {
             .placement = VplPlacement::surfels, .count = count, .bounces = bounces, .seed = 0};
         return configuration;
-    }
-
-    /// Surfels gather as on a GPU.
-    void pretend_hardware() {
-        gl::Limits limits = device_of(renderer).limits();
-        limits.software = false;
-        device_of(renderer).pretend(limits);
     }
 };
 
@@ -267,9 +259,10 @@ TEST_CASE_FIXTURE(SurfelTests, "on a GPU, few dispatches gather the same bounces
         pictures.push_back(render(shipped_scene(shown.scene), {24, 18}));
         accounts.push_back(renderer.report().vpls->flux);
     };
-    for (const Case& shown : cases) show(shown);
-    pretend_hardware();
-    for (const Case& shown : cases) show(shown);
+    for (const bool software : {true, false}) {
+        pretend(renderer, software);
+        for (const Case& shown : cases) show(shown);
+    }
     CHECK(pictures[cases.size() - 1] != pictures.back());
     for (std::size_t i = 0; i < cases.size(); ++i) {
         CAPTURE(cases[i].scene);

@@ -90,13 +90,14 @@ Culling culling_of(Gpu& gpu, LightList kind) {
     return {gpu.program({"lights/light_tiles.comp"}, {"GROUP_A_CELL"}), true};
 }
 
-/// Culls in the dispatches of loop_parts.
+/// Culls in the dispatches of loop_parts, or where there is a work group a list, in one.
 void cull(const Gpu& gpu, const Culling& culling, const LightBins& bins, const gl::Uniforms& uniforms) {
     const CellGrid& grid = bins.grid;
     const Groups all =
         culling.by_groups ? Groups{grid.tiles.x, grid.tiles.y} : Groups{groups(grid.cells(), CULL_GROUP)};
     ComputeSteps steps(gpu);
-    for (const gl::Uniforms& part : loop_parts(gpu.device().limits(), bins.longest(), 2)) {
+    const gl::Limits limits = culling.by_groups ? gl::Limits{} : gpu.device().limits();
+    for (const gl::Uniforms& part : loop_parts(limits, bins.longest(), 2)) {
         steps.run(culling.program, all, uniforms + part);
     }
 }

@@ -33,7 +33,7 @@ struct LitSurfels {
 /// The VPLs of a frame with their light.
 struct Vpls {
     ValueHandle<VplCounts> counts;
-    BufferHandle<gpu::FluxAccount> flux;  ///< one per path, or of all surfels
+    BufferHandle<gpu::FluxAccount> flux;  ///< one per path; of surfels: VplCounts::accounts
     std::variant<TracedVpls, LitSurfels> records;
 };
 
