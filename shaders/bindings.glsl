@@ -143,6 +143,7 @@
 #define CULL_GROUP 64       // invocations of a work group in light_*.comp
 #define SURFEL_GROUP 64     // invocations of a work group in surfel_*.comp: surfels, cell points or rows
 #define BOUNCE_GROUP 32     // the same of surfel_bounce.comp, of a slice: ROWS_A_BOUNCE surfels each
+#define BOUNCE_SLICES 16    // invocations of surfel_bounce.comp that share the columns of a surfel, where a device has many
 #define BOUNCES_GROUP 512   // the same of surfel_bounces.comp
 #define BOUNCES_AN_ACCOUNT 4  // bounces that are gathered until the flux is accounted for again
 // Rays that an invocation of surfel_light.comp casts to sources of one kind in a dispatch, at most. Each ray loops over

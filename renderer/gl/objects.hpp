@@ -85,8 +85,8 @@ class Buffer : public Object {
         write(std::as_bytes(std::span<const T>(&value, 1)), offset);
     }
 
-    /// Reads back the first `count` elements, of which there must be so many, after all GPU commands issued
-    /// so far; waits for the GPU. For tests and reports.
+    /// Reads back the first `count` elements, which the buffer must have, after all GPU commands issued so
+    /// far; waits for the GPU. For tests and reports.
     template <Plain T>
     [[nodiscard]] std::vector<T> download(std::size_t count) const {
         std::vector<T> content(count);

@@ -13,9 +13,9 @@ uniform uint column_stride;
 // surfel.
 uint surfel_of(uint row, uint column) { return column * column_stride + row % column_stride; }
 
-// Each invocation of surfel_bounce.comp gathers for so many surfels, which have the same columns, or with SLICES for a part
+// Each invocation of surfel_bounce.comp gathers for so many surfels, which have the same columns, or if SLICED for a part
 // of the columns of one. Neighbouring invocations have neighbouring surfels, and each has its next one so many surfels on.
-#ifdef SLICES
+#ifdef SLICED
 #define ROWS_A_BOUNCE 1u
 #else
 #define ROWS_A_BOUNCE 4u

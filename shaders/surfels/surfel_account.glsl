@@ -1,12 +1,8 @@
 // What follows some bounces: the light of those to come, as far as it can be foreseen, and an account of where the flux of
 // the lights went, which tells whether another bounce is worth gathering. Each work group does so for every
 // gl_NumWorkGroups.x-th cell; its first SURFEL_GROUP invocations add up, and all of them call each function.
-#include "surfels/surfel.glsl"
+#include "surfels/surfel_bounced.glsl"
 
-// Scale, and 1 - covered share.
-layout(std430, binding = BINDING_SURFEL_ROWS) readonly restrict buffer Rows { vec2 rows[]; };
-layout(std430, binding = BINDING_CELL_LIGHT) coherent restrict buffer Cells { CellLight cells[]; };
-layout(std430, binding = BINDING_BOUNCE) coherent restrict buffer Bounce { vec4 bounced[]; };  // see surfel_bounce.comp
 layout(std430, binding = BINDING_FLUX_ACCOUNT) restrict buffer Flux { FluxAccount flux[]; };
 
 // Most bounces like the last one that are added. Without a limit, rounding would decide where a closed room absorbs
@@ -16,10 +12,6 @@ const float MOST_BOUNCES = 1000.0;
 // Gathering stops when the last bounce adds no more than this share to the light of any cell. A share of all light would
 // not do: that in a house is little beside that on the ground around it.
 const float LITTLE = 2e-4;
-
-// Where the light of the last bounce that was gathered is, and that of the one before.
-uint at_last(uint bounce, uint id) { return (bounce + 1u) % 2u * surfel_count + id; }
-uint at_previous(uint bounce, uint id) { return bounce % 2u * surfel_count + id; }
 
 uint cell_of(uint i) { return gl_WorkGroupID.x + i * gl_NumWorkGroups.x; }
 

@@ -1,26 +1,18 @@
 // One bounce: surfels gather the light that others reflect. In the first dispatch (FIRST) that is the reflected flux of
 // the lights, placed where it falls within each cell; later it is what the others gathered in the previous bounce. Adds
-// to CellLight::indirect. One invocation per ROWS_A_BOUNCE surfels, or with SLICES, that many per surfel.
-#include "surfels/surfel.glsl"
+// to CellLight::indirect. One invocation per ROWS_A_BOUNCE surfels, or if SLICED, BOUNCE_SLICES per surfel.
+#include "surfels/surfel_bounced.glsl"
 
-#ifdef SLICES
-layout(local_size_x = BOUNCE_GROUP, local_size_y = SLICES) in;
+#ifdef SLICED
+layout(local_size_x = BOUNCE_GROUP, local_size_y = BOUNCE_SLICES) in;
 #else
 layout(local_size_x = BOUNCE_GROUP) in;
-#define SLICES 1u
-#define ONE_SLICE
 #endif
 
 layout(std430, binding = BINDING_SURFELS) readonly restrict buffer Surfels { Surfel surfels[]; };
 layout(std430, binding = BINDING_DIRECT_POINTS) readonly restrict buffer DirectPoints { DirectPoint direct_points[]; };
 layout(std430, binding = BINDING_CELL_POINTS) readonly restrict buffer Points { CellPoint cell_points[]; };
 layout(std430, binding = BINDING_FORM_FACTORS) readonly restrict buffer FormFactors { uint form_factors[]; };
-// Scale, and 1 - covered share.
-layout(std430, binding = BINDING_SURFEL_ROWS) readonly restrict buffer Rows { vec2 rows[]; };
-layout(std430, binding = BINDING_CELL_LIGHT) restrict buffer Cells { CellLight cells[]; };
-// Two parts in turn, for the previous bounce and this one: rgb is radiosity, a the surfel's scale. A third one for the
-// irradiance of this bounce.
-layout(std430, binding = BINDING_BOUNCE) restrict buffer Bounce { vec4 bounced[]; };
 
 uniform uint bounce;  // 2 or more
 
@@ -64,15 +56,15 @@ void add_column(inout RowsHere here, uint other, float factors[ROWS_A_BOUNCE]) {
 #else
 
 void add_column(inout RowsHere here, uint other, float factors[ROWS_A_BOUNCE]) {
-    vec4 sent = bounced[(bounce % 2u) * surfel_count + other];
+    vec4 sent = bounced[at_previous(bounce, other)];
     for (uint k = 0u; k < ROWS_A_BOUNCE; ++k) here.sum[k] += factors[k] * sent.a * sent.rgb;
 }
 
 #endif
 
-// Every SLICES-th pair of columns, from that of the invocation's slice on.
+// Each slice has every BOUNCE_SLICES-th pair of columns; without slices, an invocation has all.
 void gather(inout RowsHere here, uint first, uint apart) {
-    for (uint i = gl_LocalInvocationID.y; i < columns / 2u; i += SLICES) {
+    for (uint i = gl_LocalInvocationID.y; i < columns / 2u; i += gl_WorkGroupSize.y) {
         float even[ROWS_A_BOUNCE];
         float odd[ROWS_A_BOUNCE];
         for (uint k = 0u; k < ROWS_A_BOUNCE; ++k) {
@@ -88,13 +80,9 @@ void gather(inout RowsHere here, uint first, uint apart) {
     }
 }
 
-#ifdef ONE_SLICE
+#ifdef SLICED
 
-void add_slices(inout RowsHere here) {}
-
-#else
-
-shared vec3 slices[SLICES][BOUNCE_GROUP];
+shared vec3 slices[BOUNCE_SLICES][BOUNCE_GROUP];
 
 void add_slices(inout RowsHere here) {
     uint row = gl_LocalInvocationID.x;
@@ -102,8 +90,12 @@ void add_slices(inout RowsHere here) {
     memoryBarrierShared();
     barrier();
     here.sum[0] = vec3(0.0);
-    for (uint i = 0u; i < SLICES; ++i) here.sum[0] += slices[i][row];
+    for (uint i = 0u; i < BOUNCE_SLICES; ++i) here.sum[0] += slices[i][row];
 }
+
+#else
+
+void add_slices(inout RowsHere here) {}
 
 #endif
 
@@ -123,10 +115,6 @@ void main() {
     for (uint k = 0u; k < ROWS_A_BOUNCE; ++k) {
         uint id = first + k * apart;
         if (id >= surfel_count) return;
-        float scale = rows[id].x;
-        vec3 irradiance = scale * here.sum[k];
-        bounced[((bounce + 1u) % 2u) * surfel_count + id] = vec4(cells[id].albedo * irradiance, scale);
-        bounced[2u * surfel_count + id] = vec4(irradiance, 0.0);
-        cells[id].indirect += irradiance;
+        add_bounce(bounce, id, here.sum[k]);
     }
 }

@@ -1,6 +1,7 @@
 // All bounces after the first ones, in one dispatch, for devices on which a chain of small dispatches takes long. One work
 // group for each of column_stride classes of surfels: those whose indices are the same modulo column_stride gather from
 // each other only. An invocation gathers for every BOUNCES_GROUP-th surfel of the class.
+#define OF_THE_GROUP coherent
 #include "surfels/surfel_account.glsl"
 
 layout(local_size_x = BOUNCES_GROUP) in;
@@ -43,12 +44,7 @@ void gather(uint bounce) {
         }
     }
     for (uint k = 0u; k < ROWS && row_of(k) < surfel_count; ++k) {
-        uint id = row_of(k);
-        float scale = rows[id].x;
-        vec3 irradiance = scale * sums[k];
-        bounced[at_last(bounce, id)] = vec4(cells[id].albedo * irradiance, scale);
-        bounced[2u * surfel_count + id] = vec4(irradiance, 0.0);
-        cells[id].indirect += irradiance;
+        add_bounce(bounce, row_of(k), sums[k]);
     }
 }
 

@@ -33,9 +33,6 @@ SurfelNumbers numbers_of(const Execution& run, const Surfels& surfels) {
     return {run.value(surfels.counts).all_surfels(), run.value(surfels.point_count)};
 }
 
-/// Invocations that share the columns of a surfel's first bounces, where a device has many.
-constexpr std::uint32_t slices = 16;
-
 struct BouncePrograms {
     const gl::Program& first;
     const gl::Program& further;
@@ -81,12 +78,12 @@ void gather_at_once(ComputeSteps& steps, const BouncePrograms& programs, std::ui
 
 BouncePrograms bounce_programs(Gpu& gpu, const std::vector<std::string>& writer_variant) {
     const bool at_once = !gpu.device().limits().software;
-    std::vector<std::string> variant;
-    if (at_once) variant.push_back(fmt::format("SLICES={}u", slices));
-    std::vector<std::string> first_variant = variant;
-    first_variant.emplace_back("FIRST");
-    return {.first = gpu.program({"surfels/surfel_bounce.comp"}, first_variant),
-            .further = gpu.program({"surfels/surfel_bounce.comp"}, variant),
+    std::vector<std::string> further;
+    if (at_once) further.emplace_back("SLICED");
+    std::vector<std::string> first = further;
+    first.emplace_back("FIRST");
+    return {.first = gpu.program({"surfels/surfel_bounce.comp"}, first),
+            .further = gpu.program({"surfels/surfel_bounce.comp"}, further),
             .at_once = at_once,
             .account = gpu.program({at_once ? "surfels/surfel_bounces.comp" : "surfels/surfel_account.comp"}),
             .writer = gpu.program({"surfels/surfel_write.comp"}, writer_variant)};
