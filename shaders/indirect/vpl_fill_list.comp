@@ -37,6 +37,7 @@ void main() {
     if (id == LIST_GROUP - 1u) {
         fill_count = index;
         fill_groups[0] = (index + FILL_GROUP - 1u) / FILL_GROUP;
-        fill_groups[1] = fill_groups[2] = 1u;
+        fill_groups[1] = 1u;
+        fill_groups[2] = 1u;
     }
 }

@@ -83,7 +83,10 @@ vec3 left_over(uint id, CellLight cell, uint bounce) {
 }
 
 void add_up_flux(uint lane, uint bounce) {
-    emitted[lane] = absorbed[lane] = escaped[lane] = truncated[lane] = vec3(0.0);
+    emitted[lane] = vec3(0.0);
+    absorbed[lane] = vec3(0.0);
+    escaped[lane] = vec3(0.0);
+    truncated[lane] = vec3(0.0);
     is_spent[lane] = true;
     for (uint i = lane; cell_of(i) < surfel_count; i += SURFEL_GROUP) {
         uint id = cell_of(i);

@@ -83,6 +83,26 @@ bool is_zero(const std::string& token) {
     return token.find_first_of("0") == 0 && token.find_first_not_of("0.") == std::string::npos;
 }
 
+bool is_one_of(const std::string& token, std::string_view characters) {
+    return token.size() == 1 && characters.find(token) != std::string_view::npos;
+}
+
+bool is_assignment(const Tokens& tokens, std::size_t i) {
+    return tokens[i] == "=" && i > 0 && i + 1 < tokens.size() && !is_one_of(tokens[i - 1], "=<>!") &&
+           tokens[i + 1] != "=";
+}
+
+/// Whether a declarator or a statement assigns twice.
+bool assigns_again(const Tokens& tokens) {
+    bool assigned = false;
+    for (std::size_t i = 0; i < tokens.size(); ++i) {
+        const bool assigns = is_assignment(tokens, i);
+        if (assigned && assigns) return true;
+        assigned = (assigned || assigns) && !is_one_of(tokens[i], ";{},");
+    }
+    return false;
+}
+
 }  // namespace
 
 std::vector<std::string> ambiguities(std::string_view shader) {
@@ -108,6 +128,7 @@ std::vector<std::string> ambiguities(std::string_view shader) {
             faults.emplace_back("a division by zero");
         }
     }
+    if (assigns_again(tokens)) faults.emplace_back("the value of an assignment is assigned");
     return faults;
 }
 

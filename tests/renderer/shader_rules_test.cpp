@@ -31,4 +31,11 @@ TEST_CASE("infinity is no quotient") {
     CHECK(ambiguities("float f() { return -1.0/0; }").size() == 1);
 }
 
+TEST_CASE("the value of an assignment is not read") {
+    CHECK(ambiguities("void main() { a = 1; b = a == 1; for (uint i = 0, j = 1; i <= 2; ++i) c += i; }")
+              .empty());
+    CHECK(ambiguities("void main() { a = b = 1; }").size() == 1);
+    CHECK(ambiguities("void main() { a[0] = a[1] = b; }").size() == 1);
+}
+
 }  // TEST_SUITE("shader rules")
