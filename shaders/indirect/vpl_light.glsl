@@ -187,7 +187,7 @@ void add_patch(inout Gathered gathered, SkyPatch sky_patch, Surface surface) {
 void add_direction(inout Gathered gathered, uint direction, Surface surface) {
     uint place = direction / 2u + direction % 2u * (COVER_DIRECTIONS / 2u);
     vec3 towards = cosine_direction(face_normal(surface), sample_2d(place, 0u, 0u));
-    vec3 origin = visible_position(surface, vpl_constants.ray_offset) + vpl_constants.ray_offset * face_normal(surface);
+    vec3 origin = ray_origin(surface, vpl_constants.ray_offset);
     if (!is_surface(closest_hit(origin, towards, 0.0, INFINITY), towards)) return;
     vec3 irradiance = PI / float(COVER_DIRECTIONS) * lit_surfels[vpl_constants.mean_record].flux;
     add_gathered(gathered, irradiance, towards, surface);

@@ -66,7 +66,7 @@ float shadow_visibility(uint index, Light light, Surface surface) {
     Shadow shadow = shadows[index];
     if (shadow.kind == SHADOW_NONE) return 1.0;
     vec3 normal = face_normal(surface);
-    vec3 origin = visible_position(surface, shadow.ray_offset) + shadow.ray_offset * normal;
+    vec3 origin = ray_origin(surface, shadow.ray_offset);
     if (shadow.kind != SHADOW_BY_RAYS) {
         bool cube = shadow.kind == SHADOW_CUBE;
         if (cube) shadow = shadows[shadow.layer + cube_face(origin - light.position)];

@@ -153,7 +153,7 @@ void main() {
     SampledRay ray = sampled_ray(surface, uvec2(at));
     vec3 direction = ray.direction;
     if (ray.density <= 0.0 || dot(direction, face_normal(surface)) <= 0.0) discard;
-    vec3 origin = visible_position(surface, ray_offset) + ray_offset * face_normal(surface);
+    vec3 origin = ray_origin(surface, ray_offset);
     Hit hit = closest_hit(origin, direction, 0.0, INFINITY);
     width_and_position = vec4(0.0);
     normal_and_direction = vec4(0.0, 0.0, octahedral_encode(-direction));

@@ -123,11 +123,14 @@ Surface unpack_surface(PackedSurface surface, vec3 window, vec2 target_size, mat
     return found;
 }
 
-// Where visibility is judged: 1/32 of a pixel nearer to the viewer. At a crease the position may lie behind the other
-// surface, as corners are rounded to 1/256 of a pixel before they are drawn; what is there may be lit from behind. It is at
-// least 24 steps of the largest coordinate, as positions far from the origin are rounded, and at most 32 offsets of rays,
-// so that the middle of a large pixel stays on its surface.
-vec3 visible_position(Surface surface, float ray_offset) {
+// Where rays from the surface start and its visibility is judged, on the side that the viewer sees. Corners are rounded to
+// 1/256 of a pixel before they are drawn: GPUs put a surface up to √2/512 of a pixel behind where it is (software drivers do
+// not), and at a crease a pixel may show what lies behind the other surface, and may be lit from behind. So the origin is
+// as much above the surface, besides the offset, and 1/32 of a pixel nearer to the viewer; at least 24 steps of the largest
+// coordinate, as positions far from the world's origin are rounded, and at most 32 offsets, so that the middle of a large
+// pixel stays on its surface.
+vec3 ray_origin(Surface surface, float ray_offset) {
     float nearer = max(surface.pixel / 32.0, 24.0 / 8388608.0 * largest(surface.position));
-    return surface.position + min(nearer, 32.0 * ray_offset) * surface.to_viewer;
+    float above = ray_offset + surface.pixel / 362.0;
+    return surface.position + min(nearer, 32.0 * ray_offset) * surface.to_viewer + above * face_normal(surface);
 }

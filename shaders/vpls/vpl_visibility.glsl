@@ -12,13 +12,13 @@
     (defined(VPL_VISIBILITY_MAPS) && (defined(EMITTERS) || defined(SKY) || defined(BALANCED)))
 
 float visibility_of_sky(vec3 direction, Surface surface) {
-    vec3 origin = visible_position(surface, vpl_constants.ray_offset) + vpl_constants.ray_offset * face_normal(surface);
+    vec3 origin = ray_origin(surface, vpl_constants.ray_offset);
     return any_hit(origin, direction, 0.0, INFINITY) ? 0.0 : 1.0;
 }
 
 float visibility_by_ray(vec3 position, vec3 normal, Surface surface) {
     vec3 target = position + vpl_constants.ray_offset * normal;
-    vec3 origin = visible_position(surface, vpl_constants.ray_offset) + vpl_constants.ray_offset * face_normal(surface);
+    vec3 origin = ray_origin(surface, vpl_constants.ray_offset);
     // At least as high above the VPL's plane as the target.
     origin += max(dot(target - origin, normal), 0.0) * normal;
     return any_hit(origin, target - origin, 0.0, 1.0) ? 0.0 : 1.0;
@@ -119,7 +119,7 @@ const float OUTSIDE = 1.0;  // visibility beyond the field of view of a perspect
 float visibility_of_vpl(uint map, VplPose pose, Surface surface) {
     MapFrame frame = pose.frame;
     vec3 facing = frame.map_from_world * face_normal(surface);
-    vec3 at = frame.map_from_world * (visible_position(surface, vpl_constants.ray_offset) - pose.origin);
+    vec3 at = frame.map_from_world * (ray_origin(surface, vpl_constants.ray_offset) - pose.origin);
     float distance = length(at);
     float height = dot(facing, at);
     float aside = sqrt(max(distance * distance - height * height, 0.0));

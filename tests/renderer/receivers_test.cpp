@@ -120,11 +120,17 @@ TEST_CASE_FIXTURE(ReceiverTests, "receivers on surfaces get what the pixels ther
             std::vector<glm::vec3> expected;
             for (std::uint32_t i = 0; i < depth.size(); ++i) {
                 if (depth[i].r == 0.0F) continue;
-                const glm::vec2 place(i % pixels.x, i / pixels.x);
-                const glm::vec2 clip = (place + 0.5F) / glm::vec2(pixels) * 2.0F - 1.0F;
-                const glm::vec4 world = results.view.world_from_clip * glm::vec4(clip, depth[i].r, 1.0F);
-                receivers.push_back({.position = glm::vec3(world) / world.w,
-                                     .normal = decoded_normal(glm::vec2(normals[i]))});
+                const auto position = [&](float across) {
+                    const glm::vec2 place(static_cast<float>(i % pixels.x) + across, i / pixels.x);
+                    const glm::vec2 clip = (place + 0.5F) / glm::vec2(pixels) * 2.0F - 1.0F;
+                    const glm::vec4 world = results.view.world_from_clip * glm::vec4(clip, depth[i].r, 1.0F);
+                    return glm::vec3(world) / world.w;
+                };
+                const glm::vec3 normal = decoded_normal(glm::vec2(normals[i]));
+                // See Receiver::position.
+                const float pixel = glm::distance(position(0.0F), position(1.0F));
+                const float above = method == VplVisibility::none ? 0.0F : pixel / 256.0F;
+                receivers.push_back({.position = position(0.0F) + above * normal, .normal = normal});
                 expected.push_back(std::numbers::pi_v<float> * shown.pixels[i]);  // radiance of white
             }
             REQUIRE(receivers.size() > 300);
