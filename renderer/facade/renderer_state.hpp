@@ -37,7 +37,10 @@ class CANDELA_PRIVATE Renderer::State {
     [[nodiscard]] std::vector<std::string> extend(Extension extension);
     void remove_extension(std::string_view name);
     void invalidate();
-    void verify(bool on) { runtime_.set_verification(on); }
+    void verify(bool on) {
+        backend_.clear_new(on);
+        runtime_.set_verification(on);
+    }
     void tone_map(const std::vector<glm::vec3>& radiance, const Target& target);
     void tone_map(GLuint texture, const Target& target);
     [[nodiscard]] std::vector<FrameReport> take_frames(bool wait);

@@ -38,6 +38,10 @@ GraphBackend::GraphBackend(Device& device) : device_(&device), timer_(device) {}
 ObjectId GraphBackend::create_texture(std::string_view name, const TextureDesc& desc) {
     Texture texture(*device_, name, desc);
     const ObjectId id = texture.name();
+    const FormatInfo info = format_info(desc.format);
+    for (std::uint32_t level = 0; clears_new_ && level < desc.mips; ++level) {
+        device_->gl().ClearTexImage(id, static_cast<GLint>(level), info.layout, info.type, nullptr);
+    }
     textures_.emplace(id, std::move(texture));
     return id;
 }
@@ -45,6 +49,9 @@ ObjectId GraphBackend::create_texture(std::string_view name, const TextureDesc& 
 ObjectId GraphBackend::create_buffer(std::string_view name, const BufferDesc& desc) {
     Buffer buffer(*device_, name, desc.count * desc.stride);
     const ObjectId id = buffer.name();
+    if (clears_new_) {
+        device_->gl().ClearNamedBufferData(id, GL_R32UI, GL_RED_INTEGER, GL_UNSIGNED_INT, nullptr);
+    }
     buffers_.emplace(id, std::move(buffer));
     return id;
 }

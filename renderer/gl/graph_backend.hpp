@@ -42,6 +42,10 @@ class GraphBackend final : public Backend {
     /// Names of the passes that the host has written, which may leave any state behind.
     void set_host_passes(std::set<std::string, std::less<>> names) { host_passes_ = std::move(names); }
 
+    /// Whether new objects are cleared. Without that, what no pass writes is undefined, and digests may
+    /// differ.
+    void clear_new(bool on) { clears_new_ = on; }
+
     /// GPU times of passes. The owner calls the timer's begin_frame and end_frame around each frame.
     [[nodiscard]] Timer& timer() { return timer_; }
 
@@ -59,6 +63,7 @@ class GraphBackend final : public Backend {
     Timer timer_;
     bool in_debug_group_ = false;  // the running pass has pushed its group
     bool in_host_pass_ = false;
+    bool clears_new_ = false;
     std::set<std::string, std::less<>> host_passes_;
     std::unordered_map<ObjectId, Texture> textures_;
     std::unordered_map<ObjectId, Buffer> buffers_;

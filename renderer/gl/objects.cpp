@@ -160,9 +160,16 @@ void Buffer::write(std::span<const std::byte> data, std::uint64_t offset) {
 }
 
 void read_buffer(const Functions& gl, GLuint buffer, std::span<std::byte> data, std::uint64_t offset) {
+    if (data.empty()) return;
+    const auto size = static_cast<GLsizeiptr>(data.size());
+    // Drivers of GPUs move a buffer that the host reads to the host's memory, where shaders are slow to read
+    // it.
+    const GLuint copy = create(gl.CreateBuffers);
+    gl.NamedBufferStorage(copy, size, nullptr, GL_CLIENT_STORAGE_BIT);
     gl.MemoryBarrier(GL_BUFFER_UPDATE_BARRIER_BIT);
-    gl.GetNamedBufferSubData(buffer, static_cast<GLintptr>(offset), static_cast<GLsizeiptr>(data.size()),
-                             data.data());
+    gl.CopyNamedBufferSubData(buffer, copy, static_cast<GLintptr>(offset), 0, size);
+    gl.GetNamedBufferSubData(copy, 0, size, data.data());
+    gl.DeleteBuffers(1, &copy);
 }
 
 Sampler::Sampler(Device& device, std::string_view label, const SamplerDesc& desc)
