@@ -19,7 +19,7 @@ Entity first_camera(const World& world) {
 Bench::Bench(const gl::GetProc& get_proc, const World& world, glm::uvec2 size)
     : world_(&world),
       camera_(first_camera(world)),
-      renderer_(get_proc),
+      renderer_(get_proc, {.keeps_gl_state = false}),
       target_(device_of(renderer_), "radiance", {size, Format::rgba32f}),
       framebuffer_(device_of(renderer_), "radiance") {
     framebuffer_.attach_colour(0, target_.name());

@@ -63,6 +63,22 @@ void add_shading(CLI::App& app, int& status) {
     part.callback([=, &status] { status = shading(*scene); });
 }
 
+void add_frames(CLI::App& app, int& status) {
+    CLI::App& part =
+        *app.add_subcommand("frames", "time of a frame after nothing, the camera or a light moved, and anew");
+    const auto study = std::make_shared<FramesStudy>();
+    const auto size = std::make_shared<std::string>("1920x1080");
+    add_scene(part, study->scene);
+    part.add_option("--size", *size, "WxH, pixels");
+    part.add_option("--vpls", study->vpls, "these many, one after the other")->delimiter(',');
+    part.add_option("--rounds", study->rounds, "after a first one that does not count")
+        ->check(CLI::Range(1, 1000));
+    part.callback([=, &status] {
+        study->size = size_named(*size);
+        status = frames(*study);
+    });
+}
+
 void add_gather(CLI::App& app, int& status) {
     CLI::App& part = *app.add_subcommand("gather", "interleaved gathering against asking all VPLs");
     const auto study = std::make_shared<GatherStudy>();
@@ -243,6 +259,7 @@ int run(int count, char** arguments) {
     int status = 0;
     add_graph(app, status, count, arguments);
     add_shading(app, status);
+    add_frames(app, status);
     add_gather(app, status);
     add_paths(app, status);
     add_reference(app, status);

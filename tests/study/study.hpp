@@ -18,6 +18,17 @@ int graph(int count, char** arguments);
 /// Compares forward with deferred shading, and measures a frame in which nothing changed.
 int shading(const std::filesystem::path& scene);
 
+/// The input of `frames`.
+struct FramesStudy {
+    std::filesystem::path scene;
+    glm::uvec2 size{1920, 1080};
+    std::vector<std::uint32_t> vpls{512, 4096};
+    int rounds = 9;
+};
+/// Times of a frame in which nothing changed, of one after the camera and one after a light moved by a
+/// millimetre, and of one that is computed anew; with the GPU's times of their passes.
+int frames(const FramesStudy& study);
+
 /// The input of `gather`.
 struct GatherStudy {
     std::filesystem::path scene;
