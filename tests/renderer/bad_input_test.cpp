@@ -362,7 +362,8 @@ class BadInput : public GlFixture {
             CHECK(is_sane(repaired));
             CHECK(repaired != moved);
             other.renderer().invalidate();
-            CHECK(other.render(scene.world, scene.camera) == repaired);
+            // Drivers may compile the programs of two renderers differently.
+            CHECK(relative_mean_square(other.render(scene.world, scene.camera), repaired) < 1e-10);
             CHECK(renderer.lines.size() == 1);
         }
         CHECK(other.lines.empty());

@@ -323,7 +323,8 @@ TEST_CASE_FIXTURE(RenderFixture, "surfaces without normal textures look the same
     };
     const Picture plain = with(diffuse(glm::vec3(0.0F), true));
     CHECK(mean(plain) > 0.0);
-    CHECK(with(bumpy(glm::vec3(0.0F), {200, 128, 200})) == plain);
+    // Other programs: a driver may round otherwise in each.
+    CHECK(relative_mean_square(with(bumpy(glm::vec3(0.0F), {200, 128, 200})), plain) < 1e-10);
 }
 
 TEST_CASE_FIXTURE(PathFixture, "paths agree on bumpy surfaces, also glossy ones, and panes") {

@@ -167,8 +167,9 @@ TEST_CASE_FIXTURE(EdgeCases, "targets of one pixel, one row and one column") {
             CHECK(is_sane(picture));
             CHECK(mean(picture) > 0.01);
         }
-        // The single pixel has the same centre as the middle pixel of 3 × 3.
-        CHECK(worst_error({{1, 1}, {render(scene, {3, 3}).at(1, 1)}}, render(scene, {1, 1}), 1e-4) < 1e-3);
+        // The single pixel has the same centre as the middle pixel of 3 × 3. Drivers may round corners to
+        // 1/256 of either: some thousandths of the picture, over which the light changes about once.
+        CHECK(worst_error({{1, 1}, {render(scene, {3, 3}).at(1, 1)}}, render(scene, {1, 1}), 1e-4) < 1e-2);
     }
 }
 

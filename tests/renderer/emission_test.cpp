@@ -200,7 +200,7 @@ TEST_CASE_FIXTURE(EmissionFixture, "an emissive texture shines where it is brigh
     add(near.world, at({0.0F, 0.01F, 0.0F}), MeshInstance{square(1.8F, textured)});
     renderer.invalidate();
     const Picture seen = render(near, size);
-    CHECK(seen.at(0, 0).r == 4.0F);
+    CHECK(seen.at(0, 0).r == doctest::Approx(4.0F).epsilon(0.01));  // GPUs filter by weights of 8 bits
     CHECK(seen.at(size.x / 2, 0).r == 0.0F);
 }
 

@@ -256,6 +256,9 @@ void main() {
     gl.LinkProgram(program);
     GLint linked = GL_FALSE;
     gl.GetProgramiv(program, GL_LINK_STATUS, &linked);
+    std::string log(1000, ' ');
+    gl.GetProgramInfoLog(program, static_cast<GLsizei>(log.size()), nullptr, log.data());
+    CAPTURE(log.c_str());
     CHECK(linked == GL_TRUE);
     gl.DeleteProgram(program);
 }

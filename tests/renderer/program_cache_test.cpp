@@ -47,7 +47,7 @@ class NewPrograms {
         programs_.compiled({"number.comp"}, {"NUMBER=" + std::to_string(number) + "u"}).use({{"factor", 3U}});
         device_.gl().DispatchCompute(1, 1, 1);
         device_.gl().MemoryBarrier(GL_BUFFER_UPDATE_BARRIER_BIT);
-        CHECK(device_.take_messages().empty());
+        CHECK(std::ranges::none_of(device_.take_messages(), &gl::DebugMessage::is_error));
         return results.download<std::uint32_t>().front();
     }
 
@@ -71,6 +71,13 @@ class CacheTests : public GlFixture {
     }
     [[nodiscard]] std::vector<fs::path> files() const {
         return {fs::directory_iterator(folder / "."), fs::directory_iterator()};
+    }
+
+    /// That the one program is loaded, not compiled: drivers may store it in other bytes each time.
+    void check_that_it_loads() {
+        static_cast<void>(Compilations::take());
+        CHECK(NewPrograms(get_proc, folder / ".").triple(5) == 15);
+        CHECK(Compilations::take() == ProgramCounts{.linked = 0, .loaded = 1});
     }
 
     sandbox::TemporaryFolder folder;
@@ -151,8 +158,8 @@ TEST_CASE_FIXTURE(CacheTests, "damaged files and those cut short are replaced wi
         CHECK(programs.triple(5) == 15);
         CHECK(programs.lines.empty());
         CHECK(Compilations::take() == ProgramCounts{.linked = 1, .loaded = 0});
-        CHECK(content_of(path) == whole);
         CHECK(files().size() == 1);
+        check_that_it_loads();
     };
     for (const std::size_t length : {std::size_t{0}, std::size_t{7}, std::size_t{47}, std::size_t{48},
                                      whole.size() / 2, whole.size() - 1}) {
@@ -175,7 +182,6 @@ TEST_CASE_FIXTURE(CacheTests, "a file that the driver refuses is replaced withou
     CHECK(NewPrograms(get_proc, folder / ".").triple(5) == 15);
     if (!caches()) return;
     const fs::path path = files().front();
-    const std::string whole = content_of(path);
     const fs::file_time_type long_ago = fs::last_write_time(path) - std::chrono::hours(1);
     fs::last_write_time(path, long_ago);
     static_cast<void>(Compilations::take());
@@ -184,7 +190,7 @@ TEST_CASE_FIXTURE(CacheTests, "a file that the driver refuses is replaced withou
     CHECK(programs.lines.empty());
     CHECK(Compilations::take() == ProgramCounts{.linked = 1, .loaded = 1});
     CHECK(fs::last_write_time(path) > long_ago);
-    CHECK(content_of(path) == whole);
+    check_that_it_loads();
 }
 
 TEST_CASE_FIXTURE(CacheTests, "a directory that cannot be written is one warning, and programs work") {

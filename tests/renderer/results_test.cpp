@@ -65,11 +65,17 @@ TEST_CASE_FIXTURE(ResultTests, "depth, normals and albedo of a plane are those o
         REQUIRE(depth.size() == size.x * size.y);
         double worst = 0.0;
         for (std::uint32_t i = 0; i < depth.size(); ++i) {
-            const PixelRay ray =
-                pixel_ray(scene.world.get<Camera>(scene.camera), pose, size, i % size.x, i / size.x);
-            const double t = -ray.origin.y / ray.direction.y;
-            const double distance = t * glm::dot(ray.direction, forward);
-            worst = std::max(worst, std::abs(near / distance / static_cast<double>(depth[i].r) - 1.0));
+            double least = 1.0, most = 0.0;
+            for (const glm::dvec2 beside : corner_rounding) {
+                const PixelRay ray = pixel_ray(scene.world.get<Camera>(scene.camera), pose, size, i % size.x,
+                                               i / size.x, beside);
+                const double t = -ray.origin.y / ray.direction.y;
+                const double expected = near / (t * glm::dot(ray.direction, forward));
+                least = std::min(least, expected);
+                most = std::max(most, expected);
+            }
+            const auto seen = static_cast<double>(depth[i].r);
+            worst = std::max(worst, std::abs(std::clamp(seen, least, most) / seen - 1.0));
             // (0, 1, 0) and 0.5 are stored exactly.
             CHECK(normal[i].x == 0.0F);
             CHECK(normal[i].y == 1.0F);

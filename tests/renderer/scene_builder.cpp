@@ -244,15 +244,15 @@ double relative_mean_square(const Picture& picture, const Picture& reference) {
 }
 
 PixelRay pixel_ray(const Camera& camera, const Transform& pose, glm::uvec2 size, std::uint32_t x,
-                   std::uint32_t y) {
+                   std::uint32_t y, glm::dvec2 beside) {
     const glm::dquat rotation(pose.rotation);
     const glm::dvec3 right = rotation * glm::dvec3(1, 0, 0);
     const glm::dvec3 up = rotation * glm::dvec3(0, 1, 0);
     const glm::dvec3 forward = rotation * glm::dvec3(0, 0, -1);
     const glm::dvec2 extent(size);
     const double aspect = extent.x / extent.y;
-    const double across = (2.0 * (x + 0.5) / extent.x - 1.0) * aspect;
-    const double upwards = 2.0 * (y + 0.5) / extent.y - 1.0;
+    const double across = (2.0 * (x + 0.5 + beside.x) / extent.x - 1.0) * aspect;
+    const double upwards = 2.0 * (y + 0.5 + beside.y) / extent.y - 1.0;
     const glm::dvec3 origin(pose.translation);
     if (camera.projection == Camera::Projection::orthographic) {
         return {origin + static_cast<double>(camera.half_height) * (across * right + upwards * up), forward};
@@ -262,13 +262,13 @@ PixelRay pixel_ray(const Camera& camera, const Transform& pose, glm::uvec2 size,
 }
 
 Picture expected_picture(const Scene& scene, glm::uvec2 size, glm::dvec3 point, glm::dvec3 normal,
-                         const std::function<glm::dvec3(glm::dvec3)>& radiance) {
+                         const std::function<glm::dvec3(glm::dvec3)>& radiance, glm::dvec2 beside) {
     Picture picture{size, {}};
     const auto& camera = scene.world.get<Camera>(scene.camera);
     const auto& pose = scene.world.get<Transform>(scene.camera);
     for (std::uint32_t y = 0; y < size.y; ++y) {
         for (std::uint32_t x = 0; x < size.x; ++x) {
-            const PixelRay ray = pixel_ray(camera, pose, size, x, y);
+            const PixelRay ray = pixel_ray(camera, pose, size, x, y, beside);
             const double t = glm::dot(point - ray.origin, normal) / glm::dot(ray.direction, normal);
             picture.pixels.emplace_back(t > 0.0 ? radiance(ray.origin + t * ray.direction) : glm::dvec3(0.0));
         }

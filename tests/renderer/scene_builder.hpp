@@ -1,5 +1,6 @@
 #pragma once
 
+#include <array>
 #include <cstdint>
 #include <functional>
 #include <glm/vec2.hpp>
@@ -86,19 +87,28 @@ struct Picture {
 /// Mean squared error relative to the reference's mean square.
 [[nodiscard]] double relative_mean_square(const Picture& picture, const Picture& reference);
 
-/// The line through the centre of a pixel, computed from the definition of the camera, not from its matrices.
+/// The line through the centre of a pixel, or so many pixels beside it, computed from the definition of the
+/// camera, not from its matrices.
 struct PixelRay {
     glm::dvec3 origin;
     glm::dvec3 direction;  ///< not unit length
 };
 [[nodiscard]] PixelRay pixel_ray(const Camera& camera, const Transform& pose, glm::uvec2 size,
-                                 std::uint32_t x, std::uint32_t y);
+                                 std::uint32_t x, std::uint32_t y, glm::dvec2 beside = glm::dvec2(0.0));
 
-/// A picture of a plane: `radiance` of the point under each pixel of the scene's camera, 0 where the plane is
-/// not seen.
+/// Drivers may round corners to 1/256 of a pixel before they draw: a pixel may show what is so far beside its
+/// centre, in pixels.
+inline constexpr std::array<glm::dvec2, 4> corner_rounding{{{-1.0 / 256.0, -1.0 / 256.0},
+                                                            {-1.0 / 256.0, 1.0 / 256.0},
+                                                            {1.0 / 256.0, -1.0 / 256.0},
+                                                            {1.0 / 256.0, 1.0 / 256.0}}};
+
+/// A picture of a plane: `radiance` of the point under each pixel of the scene's camera, or so many pixels
+/// beside its centre; 0 where the plane is not seen.
 [[nodiscard]] Picture expected_picture(const Scene& scene, glm::uvec2 size, glm::dvec3 point,
                                        glm::dvec3 normal,
-                                       const std::function<glm::dvec3(glm::dvec3)>& radiance);
+                                       const std::function<glm::dvec3(glm::dvec3)>& radiance,
+                                       glm::dvec2 beside = glm::dvec2(0.0));
 
 inline constexpr std::uint64_t software_loops = 65'535;  ///< gl::Limits::loop_iterations of software drivers
 inline constexpr std::uint64_t endless_loops = gl::Limits{}.loop_iterations;
