@@ -92,13 +92,19 @@ bool is_assignment(const Tokens& tokens, std::size_t i) {
            tokens[i + 1] != "=";
 }
 
+/// Whether a declarator, a statement, or what follows the parenthesis of a `for`, may end with this token.
+bool may_end_statement(const Tokens& tokens, std::size_t i) {
+    const bool in_front_of_word = i + 1 < tokens.size() && is_word(tokens[i + 1].front());
+    return is_one_of(tokens[i], ";{},") || (tokens[i] == ")" && in_front_of_word);
+}
+
 /// Whether a declarator or a statement assigns twice.
 bool assigns_again(const Tokens& tokens) {
     bool assigned = false;
     for (std::size_t i = 0; i < tokens.size(); ++i) {
         const bool assigns = is_assignment(tokens, i);
         if (assigned && assigns) return true;
-        assigned = (assigned || assigns) && !is_one_of(tokens[i], ";{},");
+        assigned = (assigned || assigns) && !may_end_statement(tokens, i);
     }
     return false;
 }
