@@ -74,11 +74,12 @@
 #define UNIT_DEPTH 5
 #define UNIT_RADIANCE 6
 #define UNIT_VPL_MAPS 7
-#define UNIT_MEAN 8
-#define UNIT_INDIRECT 9
-#define UNIT_BUMPS 10
-#define UNIT_MIRRORED_ALBEDO 11
-#define UNIT_LAST 11
+#define UNIT_VPL_SLOPES 8
+#define UNIT_MEAN 9
+#define UNIT_INDIRECT 10
+#define UNIT_BUMPS 11
+#define UNIT_MIRRORED_ALBEDO 12
+#define UNIT_LAST 12
 // Passes that draw meshes read no G-buffer.
 #define UNIT_EMISSION UNIT_ALBEDO
 #define UNIT_SKY UNIT_INDIRECT
@@ -109,6 +110,8 @@
 #define IMAGE_RADIANCE 0
 #define IMAGE_INDIRECT 0
 #define IMAGE_INSPECTED 0
+#define IMAGE_VPL_MAPS 0
+#define IMAGE_VPL_SLOPES 1
 #define IMAGE_INDIRECT_DIRECTION 1
 #define IMAGE_LAST 1
 
@@ -128,6 +131,7 @@
 #define BVH_STACK_SIZE 145
 
 #define PIXEL_BLOCK 16      // pixels along an edge of the block that a work group shades: pixel_block.glsl
+#define MAP_BLOCK 8         // texels along an edge of the part of a VPL's map that a work group of vpl_maps.comp traces
 #define RECONSTRUCT_GROUP 64  // pixels of a row that a work group reconstructs
 #define LIST_GROUP 256      // invocations of the one work group that lists pixels
 #define FILL_GROUP 64       // pixels that a work group gathers VPLs for: vpl_fill.comp

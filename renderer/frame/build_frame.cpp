@@ -213,7 +213,7 @@ VplSet add_vpl_set(FrameGraph& graph, Gpu& gpu, const WantedVpls& wanted, const 
 /// What all VPLs of a set have in common, and their depth maps.
 struct MappedSet {
     VplCommon common;
-    std::optional<TextureHandle> maps;  ///< if visibility is found by maps
+    std::optional<VplMaps> maps;  ///< if visibility is found by maps
 };
 
 MappedSet add_mapped_set(FrameGraph& graph, Gpu& gpu, const LitScene& lit,
@@ -241,7 +241,9 @@ ValueHandle<std::uint32_t> prepare_next_set(FrameGraph& graph, Gpu& gpu, const W
     graph.add("keep-next-set", [&](Pass& pass) {
         pass.side_effect();
         pass.read(set.visibility.rows, Usage::storage);
-        if (mapped.maps) pass.read(*mapped.maps, Usage::sampled);
+        if (!mapped.maps) return;
+        pass.read(mapped.maps->depth, Usage::sampled);
+        pass.read(mapped.maps->slopes, Usage::sampled);
     });
     return *set.waiting;
 }

@@ -107,7 +107,8 @@ void GraphBackend::end_pass() {
 void GraphBackend::bind_texture(ObjectId texture, const TextureDesc& desc, Binding binding) {
     const Functions& gl = device_->gl();
     if (binding.usage == Usage::storage) {
-        gl.BindImageTexture(binding.point, texture, 0, GL_FALSE, 0, GL_READ_WRITE,
+        const GLboolean layers = desc.shape == TextureShape::flat ? GL_FALSE : GL_TRUE;
+        gl.BindImageTexture(binding.point, texture, 0, layers, 0, GL_READ_WRITE,
                             format_info(desc.format).internal);
         return;
     }

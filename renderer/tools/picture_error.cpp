@@ -3,9 +3,11 @@
 #include <algorithm>
 #include <cmath>
 #include <string_view>
+#include <vector>
 
 #include <fmt/format.h>
 #include <glm/geometric.hpp>
+#include <glm/vec4.hpp>
 
 #include <candela/tools/tool_error.hpp>
 
@@ -22,7 +24,45 @@ void require_finite(const Picture& picture, std::string_view name) {
     }
 }
 
+/// Sums along one axis of the pixels that count, and of their weights (alpha).
+std::vector<glm::dvec4> blurred_along(const std::vector<glm::dvec4>& pixels, glm::ivec2 size, glm::ivec2 axis,
+                                      double deviation) {
+    const int reach = static_cast<int>(std::ceil(3.0 * deviation));
+    std::vector<glm::dvec4> sums(pixels.size(), glm::dvec4(0.0));
+    for (int y = 0; y < size.y; ++y) {
+        for (int x = 0; x < size.x; ++x) {
+            glm::dvec4& sum = sums[static_cast<std::size_t>(y * size.x + x)];
+            for (int k = -reach; k <= reach; ++k) {
+                const glm::ivec2 at = glm::ivec2(x, y) + k * axis;
+                if (at.x < 0 || at.y < 0 || at.x >= size.x || at.y >= size.y) continue;
+                const double weight = std::exp(-0.5 * k * k / (deviation * deviation));
+                sum += weight * pixels[static_cast<std::size_t>(at.y * size.x + at.x)];
+            }
+        }
+    }
+    return sums;
+}
+
+Picture blurred(const Picture& picture, std::span<const std::uint8_t> hit) {
+    const double deviation = picture.size.x / 120.0;
+    std::vector<glm::dvec4> pixels;
+    pixels.reserve(picture.pixels.size());
+    for (std::size_t i = 0; i < picture.pixels.size(); ++i) {
+        pixels.push_back(counts(hit, i) ? glm::dvec4(picture.pixels[i], 1.0) : glm::dvec4(0.0));
+    }
+    pixels = blurred_along(pixels, picture.size, {1, 0}, deviation);
+    pixels = blurred_along(pixels, picture.size, {0, 1}, deviation);
+    Picture result{picture.size, {}};
+    for (const glm::dvec4& sum : pixels) result.pixels.emplace_back(glm::dvec3(sum) / std::max(sum.a, 1e-30));
+    return result;
+}
+
 }  // namespace
+
+double blotch(const Picture& picture, const Picture& reference, std::span<const std::uint8_t> hit) {
+    require_comparable(picture, reference, hit);
+    return relative_mse(blurred(picture, hit), blurred(reference, hit), hit);
+}
 
 double relative_mse(const Picture& picture, const Picture& reference, std::span<const std::uint8_t> hit) {
     require_comparable(picture, reference, hit);

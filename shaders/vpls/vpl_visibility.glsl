@@ -46,91 +46,98 @@ VplPose vpl_pose(vec3 position, vec3 normal, uint map) {
 }
 
 layout(binding = UNIT_VPL_MAPS) uniform sampler2DArray vpl_maps;
+layout(binding = UNIT_VPL_SLOPES) uniform usampler2DArray vpl_slopes;
 
-// The four texels around a direction: (0, 0), (1, 0), (0, 1) and (1, 1).
-struct MapTexels {
-    vec2 first;  // place of (0, 0) in the slot
-    vec4 depth;
-    vec2 at;  // place of the direction between them: in [0, 1], or up to half a texel beyond at the border of the map
+// The planes that the four texels around a direction see: (0, 0), (1, 0), (0, 1) and (1, 1).
+struct SeenPlanes {
+    vec4 x;  // the texels' centres, on the surface of the map
+    vec4 y;
+    vec4 z;
+    vec4 depth;    // of the planes there
+    vec4 along_x;  // at any point (x, y, z) of the surface it is along_x x + along_y y + along_z z
+    vec4 along_y;
+    vec4 along_z;
+    vec4 weight;  // bilinear
 };
 
-vec4 bilinear_weights(vec2 at) { return vec4(1.0 - at.x, at.x, 1.0 - at.x, at.x) * vec4(1.0 - at.yy, at.yy); }
-
-MapTexels texels_around(uint map, vec2 place) {
+SeenPlanes planes_around(uint map, MapFrame frame, vec2 place) {
     float side = float(vpl_constants.map_resolution);
+    float texel = frame.width / side;
     vec2 inside = (place * 0.5 + 0.5) * side - 0.5;
     vec2 first = clamp(floor(inside), 0.0, side - 2.0);
+    vec2 share = clamp(inside - first, 0.0, 1.0);
     VplTile tile = vpl_tile(map);
-    vec2 middle = (vec2(tile.corner) + first + 1.0) / vec2(textureSize(vpl_maps, 0).xy);
-    vec4 depth = textureGather(vpl_maps, vec3(middle, float(tile.layer))).wzxy;
-    return MapTexels(first, depth, inside - first);
+    vec3 middle = vec3((vec2(tile.corner) + first + 1.0) / vec2(textureSize(vpl_maps, 0).xy), float(tile.layer));
+    uvec4 slopes = textureGather(vpl_slopes, middle).wzxy;
+    vec4 slope_x = uintBitsToFloat(slopes << 16u);  // see pack_slope
+    vec4 slope_y = uintBitsToFloat(slopes & 0xffff0000u);
+    vec4 column = first.x + vec4(0.5, 1.5, 0.5, 1.5);
+    vec4 row = first.y + vec4(0.5, 0.5, 1.5, 1.5);
+    vec4 fold_x = mix(vec4(-frame.bend), vec4(frame.bend), greaterThanEqual(column + row, vec4(side)));
+    vec4 fold_y = mix(vec4(-frame.bend), vec4(frame.bend), greaterThanEqual(column, row));
+    SeenPlanes seen;
+    seen.x = texel * (column + row) - frame.width;
+    seen.y = texel * (column - row);
+    seen.z = 1.0 - fold_x * seen.x - fold_y * seen.y;
+    seen.depth = textureGather(vpl_maps, middle).wzxy;
+    seen.along_z = seen.depth * (1.0 - slope_x * seen.x - slope_y * seen.y);
+    seen.along_x = seen.depth * slope_x + fold_x * seen.along_z;
+    seen.along_y = seen.depth * slope_y + fold_y * seen.along_z;
+    seen.weight = vec4(1.0 - share.x, share.x, 1.0 - share.x, share.x) * vec4(1.0 - share.yy, share.yy);
+    return seen;
 }
 
-// Whether the texels see one plane, or nothing at all. See theory.md, "One plane in a VPL map".
-bool see_one_plane(MapTexels texels) {
-    vec4 depth = texels.depth;
-    float most = max(max(depth.x, depth.y), max(depth.z, depth.w));
-    return abs(depth.x + depth.w - depth.y - depth.z) <= 1e-5 * most;
+// Depths of the planes at a point of the map's surface.
+vec4 depths_at(SeenPlanes seen, vec3 at) { return seen.along_x * at.x + seen.along_y * at.y + seen.along_z * at.z; }
+
+// Depths at the texels' centres of the plane through `at` with this normal, in the map's space.
+vec4 depths_of_plane(SeenPlanes seen, vec3 at, vec3 normal) {
+    vec3 along = normal * (vpl_constants.map_near / dot(normal, at));
+    return along.x * seen.x + along.y * seen.y + along.z * seen.z;
 }
 
-// Whether the plane that the texels see is not between the map's origin and the position.
-bool is_before_plane(MapTexels texels, MapFrame frame, vec3 at) {
-    return vpl_map_depth(frame, at) >= dot(bilinear_weights(texels.at), texels.depth);
-}
+float least(vec4 v) { return min(min(v.x, v.y), min(v.z, v.w)); }
+float most(vec4 v) { return max(max(v.x, v.y), max(v.z, v.w)); }
 
-// Share of the texels whose surfaces are not nearer than the distance. The inverse of a unit direction's octahedral
-// length is the length of its point on the octahedron.
-float share_beyond(MapTexels texels, MapFrame frame, float distance) {
-    float texel = 2.0 / float(vpl_constants.map_resolution);
-    vec4 u = texel * (texels.first.x + vec4(0.5, 1.5, 0.5, 1.5)) - 1.0;
-    vec4 v = texel * (texels.first.y + vec4(0.5, 0.5, 1.5, 1.5)) - 1.0;
-    vec4 x = frame.width * 0.5 * (u + v);
-    vec4 y = frame.width * 0.5 * (u - v);
-    vec4 z = 1.0 - frame.bend * abs(x) - frame.bend * abs(y);
-    vec4 nearest = vpl_constants.map_near * sqrt(x * x + y * y + z * z);
-    vec4 share = bilinear_weights(clamp(texels.at, 0.0, 1.0));
-    return dot(share, vec4(greaterThanEqual(nearest, distance * texels.depth)));
+// How much farther than its centre a texel may reach, relative to its distance: its diagonal.
+float reach_of_texel(MapFrame frame) { return 2.8284271 * frame.width / float(vpl_constants.map_resolution); }
+
+// Where a wall hides the surface in some of the texels, others that do not see the surface hide it, too: what they see is
+// before the wall, as the floor in front of it is; or, if the surface is so close behind the wall that both may end in one
+// edge, far behind the surface.
+vec4 with_unseeing(vec4 hides, SeenPlanes seen, vec4 planes, float own_depth, float reach) {
+    vec3 walls = vec3(dot(hides, seen.along_x), dot(hides, seen.along_y), dot(hides, seen.along_z));  // their sum
+    vec4 depths = walls.x * seen.x + walls.y * seen.y + walls.z * seen.z;
+    vec4 before_wall = vec4(greaterThan(dot(hides, vec4(1.0)) * seen.depth, depths));
+    bool close = most(hides * planes) < own_depth * (1.0 + 2.0 * reach);
+    vec4 far_behind = close ? vec4(lessThan(planes, vec4(0.8 * own_depth))) : vec4(0.0);
+    return max(hides, max(before_wall, far_behind));
 }
 
 // A map covers the hemisphere along its axis only.
 vec3 above_horizon(vec3 at) { return vec3(at.xy, max(at.z, 0.0)); }
 
-// Sine of the largest angle δ between a direction and the centres of the texels that its bilinear look-up reads, in a
-// map of N = `texels` texels along a side: sin δ ≤ 2√2 w s / N with w = MapFrame::width and s = vpl_map_length. The
-// factor 1 + 5/N allows for the lift, which turns the look-up by δ; s is never above √3. See theory.md, "Footprint of a
-// look-up".
-float footprint_sine(MapFrame frame, vec3 direction, float texels) {
-    float s = vpl_map_length(frame, direction);
-    return min(2.8284271 * min(s * (1.0 + 5.0 / texels), 1.7320508) / texels * frame.width, 0.9);
-}
-
-// Metres to lift the surface along its normal before the look-up: ρ tan δ, with ρ the distance `aside` from the foot of
-// the perpendicular from the map's origin. Its own plane then never shadows it. Shadows begin at the foot of the object
-// that casts them and end at most 2δ from their true edge. Added margins: a tenth of the distance for shading normals
-// that are about 5 degrees off, and four ray offsets for rounding. See theory.md, "Lift above VPL maps".
-float lift_above_map(float aside, float distance, float sine) {
-    return (aside + 0.1 * distance) * sine * inversesqrt(1.0 - sine * sine) + 4.0 * vpl_constants.ray_offset;
-}
-
 const float OUTSIDE = 1.0;  // visibility beyond the field of view of a perspective map
 
-// Share of the VPL's light that reaches the surface, in [0, 1]. Where the map sees one plane in the surface's direction,
-// it is 0 or 1, by the exact depth of that plane. Elsewhere it comes from four depth comparisons. `map`: see vpl_atlas.glsl.
+// Share of the VPL's light that reaches the surface, in [0, 1], by the four texels around its direction. What a texel sees
+// hides the surface if the surface is behind its plane, and it before the plane of the surface. `map`: see vpl_atlas.glsl.
+// See theory.md, "Planes in VPL maps".
 float visibility_of_vpl(uint map, VplPose pose, Surface surface) {
     MapFrame frame = pose.frame;
     vec3 facing = frame.map_from_world * face_normal(surface);
     vec3 at = frame.map_from_world * (ray_origin(surface, vpl_constants.ray_offset) - pose.origin);
-    float distance = length(at);
-    float height = dot(facing, at);
-    float aside = sqrt(max(distance * distance - height * height, 0.0));
-    float sine = footprint_sine(frame, above_horizon(at) / distance, float(vpl_constants.map_resolution));
-    vec3 lifted = at + lift_above_map(aside, distance, sine) * facing;
-    vec3 seen = above_horizon(lifted);
-    vec2 place = vpl_map_place(frame, seen);
+    vec3 direction = above_horizon(at);
+    float inverse_length = 1.0 / vpl_map_length(frame, direction);
+    vec3 point = direction * inverse_length;
+    vec2 place = vpl_map_place(frame, point);
     if (max(abs(place.x), abs(place.y)) > 1.001) return OUTSIDE;
-    MapTexels texels = texels_around(map, place);
-    if (see_one_plane(texels)) return is_before_plane(texels, frame, seen) ? 1.0 : 0.0;
-    return share_beyond(texels, frame, min(length(lifted), distance));
+    SeenPlanes seen = planes_around(map, frame, place);
+    vec4 before = vec4(greaterThan(seen.depth, depths_of_plane(seen, at, facing)));
+    float own_depth = vpl_constants.map_near * inverse_length;
+    vec4 planes = depths_at(seen, point);
+    vec4 hides = before * vec4(greaterThan(planes, vec4(own_depth)));
+    if (most(hides) > least(hides)) hides = with_unseeing(hides, seen, planes, own_depth, reach_of_texel(frame));
+    return dot(seen.weight, 1.0 - hides);
 }
 
 #else

@@ -40,7 +40,8 @@ TEST_CASE("all measures are printed, for PFM and EXR files") {
     write_exr(folder / "b.exr", constant({5, 3}, glm::vec3(0.5F)));
     // 0.25² / (0.5² · 1.01), √(3 · 0.25²), 0.25 / 0.5, 0.75 / 0.5; FLIP has its own tests.
     const std::string text = compare({folder / "a.pfm", folder / "b.exr", {}, {}, {}});
-    CHECK(text.starts_with("relMSE   0.247525\nRMSE     0.433013\nbias     0.5\nspikes   1.5\nFLIP     0."));
+    CHECK(text.starts_with(
+        "relMSE   0.247525\nRMSE     0.433013\nbias     0.5\nspikes   1.5\nblotch   0.247525\nFLIP     0."));
 }
 
 TEST_CASE("a mask excludes pixels, and the heat map shows them grey") {

@@ -40,7 +40,7 @@ LEVERS: dict[str, Config] = {
 PLACEMENTS = {"paths": "interleave-auto", "surfels": "surfels"}
 
 # The VPL visibility is a separate axis of the matrix.
-MAP_RESOLUTION = 64  # texels per side of a VPL's depth map
+MAP_RESOLUTION = 48  # texels per side of a VPL's map
 VISIBILITIES: dict[str, Config] = {
     "none": {"visibility": "none"},
     "maps": {"visibility": "maps", "map_resolution": MAP_RESOLUTION},

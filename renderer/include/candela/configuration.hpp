@@ -82,7 +82,7 @@ enum class VplVisibility : std::uint8_t {
 /// Visibility of VPLs.
 struct VplVisibilitySettings {
     VplVisibility method = VplVisibility::maps;
-    std::uint32_t map_resolution = 64;  ///< texels along a side of a VPL's map
+    std::uint32_t map_resolution = 48;  ///< texels along a side of a VPL's map
     bool operator==(const VplVisibilitySettings&) const = default;
 };
 

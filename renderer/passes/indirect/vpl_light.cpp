@@ -76,7 +76,10 @@ void read_vpl_light(Pass& pass, const VplLight& light) {
     pass.read(light.vpls.counts);
     std::visit([&](const auto& records) { read_records(pass, records); }, light.vpls.records);
     read_vpl_constants(pass, light.common);
-    if (light.maps) pass.read(*light.maps, {Usage::sampled, UNIT_VPL_MAPS});
+    if (light.maps) {
+        pass.read(light.maps->depth, {Usage::sampled, UNIT_VPL_MAPS});
+        pass.read(light.maps->slopes, {Usage::sampled, UNIT_VPL_SLOPES});
+    }
     if (light.rays) read_tracing(pass, *light.rays);
 }
 

@@ -16,8 +16,8 @@ namespace candela {
 struct VplLight {
     Vpls vpls;
     VplCommon common;
-    std::optional<TextureHandle> maps{};  ///< depth maps of the VPLs, if visibility is found by maps
-    std::optional<Tracing> rays{};        ///< BVH for shadow rays: of all VPLs, or of those without a map
+    std::optional<VplMaps> maps{};  ///< if visibility is found by maps
+    std::optional<Tracing> rays{};  ///< BVH for shadow rays: of all VPLs, or of those without a map
 };
 
 /// Iterations of loops that a VPL, or a group of surfels, takes at most in vpl_light.glsl: see loop_parts.

@@ -34,7 +34,9 @@ Shown shown_lists(const CellGrid& grid, const Inspection& wanted) {
 
 Mapping mapping_of(const Inspected& inspected, Mapping wanted) {
     if (wanted != Mapping::automatic) return wanted;
-    if (inspected.texture && is_depth(inspected.texture->desc.format)) return Mapping::depth;
+    if (inspected.depth.terms || (inspected.texture && is_depth(inspected.texture->desc.format))) {
+        return Mapping::depth;
+    }
     const bool single = !inspected.texture || gl::format_info(inspected.texture->desc.format).components == 1;
     return single ? Mapping::heat : Mapping::colour;
 }

@@ -13,7 +13,7 @@
 
 namespace candela {
 
-/// Layout of the depth maps of VPLs: square slots in the layers of a 2D array texture.
+/// Layout of the maps of VPLs: square slots in the layers of a 2D array texture.
 struct VplAtlas {
     std::uint32_t resolution = 1;  ///< texels along a side of a slot
     std::uint32_t tiles = 1;       ///< slots along a side of a layer
@@ -29,6 +29,12 @@ struct VplAtlas {
 /// The atlas with the fewest layers, at least one, for `maps` slots, within the limits of the driver. Throws
 /// gl::GlError if there is none.
 [[nodiscard]] VplAtlas plan_vpl_atlas(std::uint32_t resolution, std::uint32_t maps, const gl::Limits& limits);
+
+/// What VPLs see: the planes behind the texels of their maps (shaders/vpls/vpl_atlas.glsl). 2D arrays.
+struct VplMaps {
+    TextureHandle depth;   ///< r32f, reversed: 1 near the VPL, 0 where there is no surface
+    TextureHandle slopes;  ///< r32ui: two half floats
+};
 
 /// Constants of all VPLs, for the CPU and for shaders that include vpl_constants.glsl.
 struct VplCommon {

@@ -30,18 +30,17 @@ struct MappedVpls {
     std::optional<ValueHandle<Focus>> focus;  ///< of the maps of surfels: SurfelFoci::of_maps
 };
 
-/// Adds node `vpl-maps` (raster; fragments trace rays): a depth map of the hemisphere above each VPL, in the
+/// Adds node `vpl-maps` (compute): a map of the planes that each VPL sees in the hemisphere above it, in the
 /// hemi-octahedral mapping (Cigolle et al., "A Survey of Efficient Representations for Independent Unit
 /// Vectors", 2014), or, of a surfel that is far from VplAtlas::focus, a perspective one of the focus. Each
 /// texel traces a ray through the BVH. In contrast to rasterised meshes, large triangles are therefore exact
 /// in a curved mapping whatever their tessellation, and a map costs as many rays as it has texels, however
-/// large the scene is. One draw covers all maps. With surfels, only new maps are traced (SurfelMaps::keys),
-/// and of the others those texels whose rays pass through changed boxes; slots that no surfel has any more
-/// are cleared. With tasks (add_surfel_updates), only maps of the surfels whose turn it is are traced.
-/// Depends on the VPLs, the BVH and the constants; with surfels also on motion, tasks and its own last
-/// result. Returns a 2D array of depth32f, reversed: 1 near the VPL, 0 where there is no surface
-/// (shaders/vpls/vpl_atlas.glsl).
-[[nodiscard]] TextureHandle add_vpl_maps(FrameGraph& graph, Gpu& gpu, const Tracing& tracing,
-                                         const MappedVpls& vpls, const VplCommon& common);
+/// large the scene is. One dispatch covers all maps. With surfels, only new maps are traced
+/// (SurfelMaps::keys), and of the others those texels whose rays pass through changed boxes; slots that no
+/// surfel has any more are cleared. With tasks (add_surfel_updates), only maps of the surfels whose turn it
+/// is are traced. Depends on the VPLs, the BVH and the constants; with surfels also on motion, tasks and its
+/// own last result.
+[[nodiscard]] VplMaps add_vpl_maps(FrameGraph& graph, Gpu& gpu, const Tracing& tracing,
+                                   const MappedVpls& vpls, const VplCommon& common);
 
 }  // namespace candela

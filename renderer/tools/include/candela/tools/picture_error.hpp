@@ -31,6 +31,12 @@ using Mask = std::vector<std::uint8_t>;
 [[nodiscard]] CANDELA_API double relative_mse(const Picture& picture, const Picture& reference,
                                               std::span<const std::uint8_t> hit = {});
 
+/// The relMSE of both pictures after a blur: of what an eye sees as blotches, beams and leaks, while noise
+/// and edges hardly count. The blur is Gaussian, with a standard deviation of 1/120 of the width, and takes
+/// pixels in `hit` only. Throws as `relative_mse` does.
+[[nodiscard]] CANDELA_API double blotch(const Picture& picture, const Picture& reference,
+                                        std::span<const std::uint8_t> hit = {});
+
 /// Throws ToolError as `relative_mse` does; for other measures.
 CANDELA_API void require_comparable(const Picture& picture, const Picture& reference,
                                     std::span<const std::uint8_t> hit);
