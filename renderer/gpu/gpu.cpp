@@ -130,20 +130,10 @@ void Gpu::clear_colour_and_depth() const {
 
 void Gpu::draw_fullscreen(const gl::Program& program, const gl::Uniforms& uniforms,
                           const gl::RasterState& state) {
-    draw_generated(GL_TRIANGLES, 3, program, uniforms, state);
-}
-
-void Gpu::draw_points(const gl::Program& program, std::uint32_t count, const gl::Uniforms& uniforms,
-                      const gl::RasterState& state) {
-    draw_generated(GL_POINTS, count, program, uniforms, state);
-}
-
-void Gpu::draw_generated(GLenum primitives, std::uint32_t vertices, const gl::Program& program,
-                         const gl::Uniforms& uniforms, const gl::RasterState& state) {
     program.use(uniforms);
     device_.set_raster_state(state);
     no_vertices_.bind();
-    gl().DrawArrays(primitives, 0, static_cast<GLsizei>(vertices));
+    gl().DrawArrays(GL_TRIANGLES, 0, 3);
 }
 
 }  // namespace candela

@@ -83,14 +83,8 @@ class Gpu {
     /// Draws one triangle that covers the viewport; the vertex stage is fullscreen.vert.
     void draw_fullscreen(const gl::Program& program, const gl::Uniforms& uniforms = {},
                          const gl::RasterState& state = {});
-    /// Draws `count` points without attributes.
-    void draw_points(const gl::Program& program, std::uint32_t count, const gl::Uniforms& uniforms,
-                     const gl::RasterState& state);
 
  private:
-    void draw_generated(GLenum primitives, std::uint32_t vertices, const gl::Program& program,
-                        const gl::Uniforms& uniforms, const gl::RasterState& state);
-
     Log log_;
     SceneCheck scene_check_;
     bool checked_;

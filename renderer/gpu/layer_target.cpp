@@ -9,22 +9,13 @@ LayerTarget::~LayerTarget() {
 
 void LayerTarget::set_layer(ObjectId texture, std::uint32_t layer, std::uint32_t side) {
     gpu_.layer_target().attach_depth_layer(texture, layer);
-    begin(side);
-}
-
-void LayerTarget::set_layers(ObjectId texture, std::uint32_t side) {
-    gpu_.layer_target().attach_depth(texture);
-    begin(side);
+    gpu_.layer_target().bind();
+    gpu_.gl().Viewport(0, 0, static_cast<GLsizei>(side), static_cast<GLsizei>(side));
 }
 
 void LayerTarget::clear() const {
     const float far = 0.0F;
     gpu_.gl().ClearBufferfv(GL_DEPTH, 0, &far);
-}
-
-void LayerTarget::begin(std::uint32_t side) {
-    gpu_.layer_target().bind();
-    gpu_.gl().Viewport(0, 0, static_cast<GLsizei>(side), static_cast<GLsizei>(side));
 }
 
 }  // namespace candela

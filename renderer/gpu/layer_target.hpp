@@ -18,14 +18,10 @@ class LayerTarget {
 
     /// Draws to one layer of a square texture, `side` texels across.
     void set_layer(ObjectId texture, std::uint32_t layer, std::uint32_t side);
-    /// The same to all layers: a geometry shader chooses one.
-    void set_layers(ObjectId texture, std::uint32_t side);
-    /// Clears them to 0: infinitely far. Raster states that write no depth prevent it.
+    /// Clears it to 0: infinitely far. Raster states that write no depth prevent it.
     void clear() const;
 
  private:
-    void begin(std::uint32_t side);
-
     Gpu& gpu_;
 };
 

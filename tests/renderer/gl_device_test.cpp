@@ -121,7 +121,7 @@ TEST_CASE_FIXTURE(GlFixture, "the error names a limit that is too low") {
                          gl::GlError);
     limits = device.limits();
     limits.texture_units = 4;
-    CHECK_THROWS_WITH_AS(require_limits(limits), "the driver offers 4 texture units; Candela needs 12",
+    CHECK_THROWS_WITH_AS(require_limits(limits), "the driver offers 4 texture units; Candela needs 13",
                          gl::GlError);
 }
 

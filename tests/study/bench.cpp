@@ -84,6 +84,7 @@ Errors mean(std::span<const Errors> errors) {
         mean.rmse += each.rmse / count;
         mean.bias += each.bias / count;
         mean.spikes += each.spikes / count;
+        mean.blotch += each.blotch / count;
     }
     return mean;
 }

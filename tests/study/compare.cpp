@@ -88,7 +88,7 @@ std::string compare(const Comparison& comparison) {
     add("RMSE", errors.rmse);
     add("bias", errors.bias);
     add("spikes", errors.spikes);
-    add("blotch", tools::blotch(picture, reference, hit));
+    add("blotch", errors.blotch);
     add("FLIP", flip(picture, reference, hit).mean);
     if (!comparison.heat) return text;
     const HeatMap heat = heat_map(picture, reference, hit, comparison.scale);

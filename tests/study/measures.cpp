@@ -79,6 +79,7 @@ Errors measure(const Picture& picture, const Picture& reference, std::span<const
         .bias = ratio(mean_of([&](std::size_t i) { return channel_sum(a(i) - r(i)); }),
                       channel_sum(mean_vector(reference, hit))),
         .spikes = ratio(largest_channel(picture, hit), largest_channel(reference, hit)),
+        .blotch = tools::blotch(picture, reference, hit),
     };
 }
 

@@ -21,6 +21,7 @@ struct Errors {
     double rmse = 0.0;     ///< √mean(|a - r|²), in units of radiance
     double bias = 0.0;     ///< Σ(a - r) / Σr over pixels and channels
     double spikes = 0.0;   ///< the picture's largest channel divided by the reference's largest
+    double blotch = 0.0;   ///< see tools::blotch
 };
 
 /// The errors over the pixels in `hit`, or over all pixels if it is empty. If the reference is black, the

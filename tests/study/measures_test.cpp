@@ -2,6 +2,7 @@
 
 #include <cmath>
 #include <limits>
+#include <span>
 #include <stdexcept>
 
 #include <doctest/doctest.h>
@@ -142,6 +143,31 @@ TEST_CASE("blocks are measured by the means of their pixels that count, if these
     for (std::size_t row = 0; row < 6; ++row) hit[12 * row + 9] = 1;
     CHECK(rel_mse_of_blocks(picture, reference, hit).value() == about(0.5 * 49.0 / (4.0 * 1.01)));
     CHECK_FALSE(rel_mse_of_blocks(picture, reference, Mask(72, 0)));
+}
+
+TEST_CASE("a blotch is what a blur leaves of the error, by the pixels that count") {
+    const glm::ivec2 size{120, 40};  // a blur of one pixel
+    const Picture reference = constant(size, glm::vec3(1.0F));
+    const auto measured = [&](auto value, std::span<const std::uint8_t> hit = {}) {
+        Picture picture = reference;
+        for (int i = 0; i < size.x * size.y; ++i) {
+            picture.pixels[static_cast<std::size_t>(i)] = glm::vec3(value(i % size.x, i / size.x));
+        }
+        return measure(picture, reference, hit);
+    };
+    const auto even = [](int, int) { return 1.5F; };
+    CHECK(measured(even).blotch == about(0.25 / 1.01));
+    const Errors fine = measured([](int x, int y) { return (x + y) % 2 == 0 ? 1.5F : 0.5F; });
+    CHECK(fine.rel_mse == about(0.25 / 1.01));
+    // A blur of one pixel leaves exp(-π²) of a chequerboard; less than a tenth at the picture's edge.
+    CHECK(fine.blotch < 1e-3 * fine.rel_mse);
+    const Errors coarse = measured([](int x, int) { return x < 60 ? 1.5F : 0.5F; });
+    // All but what is within two pixels of the step.
+    CHECK(coarse.blotch > 0.95 * coarse.rel_mse);
+    CHECK(coarse.blotch < coarse.rel_mse);
+    Mask left(reference.pixels.size());
+    for (std::size_t i = 0; i < left.size(); ++i) left[i] = i % 120 < 60 ? 1 : 0;
+    CHECK(measured([](int x, int) { return x < 60 ? 1.5F : 9.0F; }, left).blotch == about(0.25 / 1.01));
 }
 
 TEST_CASE("the mean square of the relative errors is the relMSE") {

@@ -29,6 +29,8 @@ COLUMNS = {
     "total_rel_mse": "relMSE, total",
     "indirect_rel_mse": "relMSE, indirect",
     "direct_rel_mse": "relMSE, direct",
+    "total_blotch": "blotch, total",
+    "indirect_blotch": "blotch, indirect",
     "indirect_bias": "bias, indirect",
     "indirect_spikes": "spikes, indirect",
     "flip": "FLIP",
