@@ -54,7 +54,8 @@ class RendererError : public RenderFixture {
 
 }  // namespace
 
-TEST_CASE_FIXTURE(RendererError, "is never a third of the error, seldom thrice, and within a factor of two in most cases") {
+TEST_CASE_FIXTURE(RendererError,
+                  "is never a third of the error, seldom thrice, and within a factor of two in most cases") {
     // Errors below 4 % count as equal: what all sets of surfels have in common outweighs what differs.
     // The study tests that the factor is two in 9 of 10 scenes, of which these are a few.
     constexpr double invisible = 0.002;
@@ -79,8 +80,8 @@ TEST_CASE_FIXTURE(RendererError, "is never a third of the error, seldom thrice, 
             within_two += ratio > 0.5 && ratio < 2.0 ? 1 : 0;
         }
     }
-    // The rays of the other set give sharper shadows than maps, and so larger differences, where few surfels are
-    // far away, as in the court.
+    // The rays of the other set give sharper shadows than maps, and so larger differences, where few surfels
+    // are far away, as in the court.
     CHECK(10 * too_high <= cases);
     CHECK(4 * within_two >= 3 * cases);
 }

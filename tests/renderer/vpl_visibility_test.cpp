@@ -260,8 +260,8 @@ TEST_CASE_FIXTURE(VplVisibilityTests, "a closed convex box has no shadows") {
     const Picture lit = picture(scene, configuration);
     configuration.visibility.method = VplVisibility::rays;
     CHECK(relative_error(picture(scene, configuration), lit) < 1e-6);
-    // No wall is behind another, but slopes of planes are rounded: by up to a 512th, so that a few pixels where
-    // walls meet are hidden in some of the VPLs.
+    // No wall is behind another, but slopes of planes are rounded: by up to a 512th, so that a few pixels
+    // where walls meet are hidden in some of the VPLs.
     for (const std::uint32_t resolution : {8U, 32U, 33U, 128U}) {
         CAPTURE(resolution);
         configuration.visibility = {VplVisibility::maps, resolution};

@@ -33,9 +33,11 @@ Json read_json(const std::filesystem::path& path) {
 }
 
 Json to_json(const Errors& errors) {
-    return {
-        {"rel_mse", errors.rel_mse}, {"rmse", errors.rmse}, {"bias", errors.bias},
-            {"spikes", errors.spikes}, {"blotch", errors.blotch}};
+    return {{"rel_mse", errors.rel_mse},
+            {"rmse", errors.rmse},
+            {"bias", errors.bias},
+            {"spikes", errors.spikes},
+            {"blotch", errors.blotch}};
 }
 
 }  // namespace candela::study
