@@ -24,6 +24,11 @@ void require_finite(const Picture& picture, std::string_view name) {
     }
 }
 
+std::size_t index_of(glm::ivec2 pixel, glm::ivec2 size) {
+    return static_cast<std::size_t>(pixel.y) * static_cast<std::size_t>(size.x) +
+           static_cast<std::size_t>(pixel.x);
+}
+
 /// Sums along one axis of the pixels that count, and of their weights (alpha).
 std::vector<glm::dvec4> blurred_along(const std::vector<glm::dvec4>& pixels, glm::ivec2 size, glm::ivec2 axis,
                                       double deviation) {
@@ -31,12 +36,12 @@ std::vector<glm::dvec4> blurred_along(const std::vector<glm::dvec4>& pixels, glm
     std::vector<glm::dvec4> sums(pixels.size(), glm::dvec4(0.0));
     for (int y = 0; y < size.y; ++y) {
         for (int x = 0; x < size.x; ++x) {
-            glm::dvec4& sum = sums[static_cast<std::size_t>(y * size.x + x)];
+            glm::dvec4& sum = sums[index_of({x, y}, size)];
             for (int k = -reach; k <= reach; ++k) {
                 const glm::ivec2 at = glm::ivec2(x, y) + k * axis;
                 if (at.x < 0 || at.y < 0 || at.x >= size.x || at.y >= size.y) continue;
                 const double weight = std::exp(-0.5 * k * k / (deviation * deviation));
-                sum += weight * pixels[static_cast<std::size_t>(at.y * size.x + at.x)];
+                sum += weight * pixels[index_of(at, size)];
             }
         }
     }

@@ -102,6 +102,15 @@ float most(vec4 v) { return max(max(v.x, v.y), max(v.z, v.w)); }
 // How much farther than its centre a texel may reach, relative to its distance: its diagonal.
 float reach_of_texel(MapFrame frame) { return 2.8284271 * frame.width / float(vpl_constants.map_resolution); }
 
+// How far behind a plane a surface may be that it does not hide, relative to the distance. Rough surfaces, and things near
+// each other that are smaller than texels, would hide themselves: half a texel, where texels see different planes near the
+// surface, but not its own.
+float hiding_slack(SeenPlanes seen, vec4 own, vec4 planes, float own_depth, float reach) {
+    bool sees_own = least(abs(seen.depth - own) - 1e-3 * abs(own)) < 0.0;
+    bool rough = least(planes) > 0.8 * own_depth && least(planes) < 0.998 * most(planes);
+    return rough && !sees_own ? 0.5 * reach : 0.0;
+}
+
 // Where a wall hides the surface in some of the texels, others that do not see the surface hide it, too: what they see is
 // before the wall, as the floor in front of it is; or, if the surface is so close behind the wall that both may end in one
 // edge, far behind the surface.
@@ -132,11 +141,14 @@ float visibility_of_vpl(uint map, VplPose pose, Surface surface) {
     vec2 place = vpl_map_place(frame, point);
     if (max(abs(place.x), abs(place.y)) > 1.001) return OUTSIDE;
     SeenPlanes seen = planes_around(map, frame, place);
-    vec4 before = vec4(greaterThan(seen.depth, depths_of_plane(seen, at, facing)));
     float own_depth = vpl_constants.map_near * inverse_length;
+    float reach = reach_of_texel(frame);
+    vec4 own = depths_of_plane(seen, at, facing);
     vec4 planes = depths_at(seen, point);
-    vec4 hides = before * vec4(greaterThan(planes, vec4(own_depth)));
-    if (most(hides) > least(hides)) hides = with_unseeing(hides, seen, planes, own_depth, reach_of_texel(frame));
+    float slack = hiding_slack(seen, own, planes, own_depth, reach);
+    vec4 before = vec4(greaterThan(seen.depth, own));
+    vec4 hides = before * vec4(greaterThan(planes, vec4(own_depth * (1.0 + slack))));
+    if (most(hides) > least(hides)) hides = with_unseeing(hides, seen, planes, own_depth, reach);
     return dot(seen.weight, 1.0 - hides);
 }
 
