@@ -54,14 +54,12 @@ class RendererError : public RenderFixture {
 
 }  // namespace
 
-TEST_CASE_FIXTURE(RendererError,
-                  "is never a third of the error, seldom thrice, and within a factor of two in most cases") {
+TEST_CASE_FIXTURE(RendererError, "is right within a factor of three but in one case, and of two in most") {
     // Errors below 4 % count as equal: what all sets of surfels have in common outweighs what differs.
     // The study tests that the factor is two in 9 of 10 scenes, of which these are a few.
     constexpr double invisible = 0.002;
     constexpr double factor = 3.0;
     int cases = 0;
-    int too_high = 0;
     int within_two = 0;
     for (const std::string name : {"cornell", "two-rooms", "corner", "lamp", "court"}) {
         CAPTURE(name);
@@ -74,15 +72,15 @@ TEST_CASE_FIXTURE(RendererError,
             const Errors errors = mean_errors(scene, truth, vpls);
             MESSAGE(name, ", ", vpls, " VPLs: estimated ", errors.estimated, ", measured ", errors.measured);
             const double ratio = std::max(errors.estimated, invisible) / std::max(errors.measured, invisible);
+            // Too high in the court with few surfels, also if exact rays are shown: the sets differ more at
+            // single pixels than in the means that are measured.
+            const bool is_too_high = name == "court" && vpls == 128;
+            CHECK(ratio < (is_too_high ? 2.0 * factor : factor));
             CHECK(ratio > 1.0 / factor);
             ++cases;
-            too_high += ratio < factor ? 0 : 1;
             within_two += ratio > 0.5 && ratio < 2.0 ? 1 : 0;
         }
     }
-    // The rays of the other set give sharper shadows than maps, and so larger differences, where few surfels
-    // are far away, as in the court.
-    CHECK(10 * too_high <= cases);
     CHECK(4 * within_two >= 3 * cases);
 }
 

@@ -159,7 +159,7 @@ TEST_CASE_FIXTURE(LightLeakTests, "a closed room stays dark, at the origin and 1
 
 TEST_CASE_FIXTURE(LightLeakTests, "what a plane hides gets no light from VPLs behind it") {
     // Ground, a plate above it and a ceiling just above the plate. Seen from below the plate is culled, but
-    // it is in the way of light. The gap is 30 offsets of rays.
+    // it is in the way of light.
     constexpr float gap = 0.005F;
     const glm::quat downwards = glm::angleAxis(glm::pi<float>(), glm::vec3(1, 0, 0));
     Scene scene;
