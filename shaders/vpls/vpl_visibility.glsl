@@ -102,13 +102,15 @@ float most(vec4 v) { return max(max(v.x, v.y), max(v.z, v.w)); }
 // How much farther than its centre a texel may reach, relative to its distance: its diagonal.
 float reach_of_texel(MapFrame frame) { return 2.8284271 * frame.width / float(vpl_constants.map_resolution); }
 
-// How far behind a plane a surface may be that it does not hide, relative to the distance. Rough surfaces, and things near
-// each other that are smaller than texels, would hide themselves: half a texel, where texels see different planes near the
-// surface, but not its own.
-float hiding_slack(SeenPlanes seen, vec4 own, vec4 planes, float own_depth, float reach) {
-    bool sees_own = least(abs(seen.depth - own) - 1e-3 * abs(own)) < 0.0;
-    bool rough = least(planes) > 0.8 * own_depth && least(planes) < 0.998 * most(planes);
-    return rough && !sees_own ? 0.5 * reach : 0.0;
+// How far behind each plane a surface may be that it does not hide, relative to the distance: a texel, where texels see
+// different planes, of those that face within 60 degrees of the surface. Curved surfaces, and things that are smaller than
+// texels, would else hide themselves.
+vec4 hiding_slack(SeenPlanes seen, vec4 planes, vec3 facing, float reach) {
+    if (least(planes) > 0.998 * most(planes)) return vec4(0.0);
+    // (along_x, along_y, along_z) is the plane's normal, times a factor, on the side that the VPL does not see.
+    vec4 cosine = seen.along_x * facing.x + seen.along_y * facing.y + seen.along_z * facing.z;
+    vec4 length2 = seen.along_x * seen.along_x + seen.along_y * seen.along_y + seen.along_z * seen.along_z;
+    return reach * vec4(lessThan(cosine * abs(cosine), -0.25 * length2));
 }
 
 // Where a wall hides the surface in some of the texels, others that do not see the surface hide it, too: what they see is
@@ -145,9 +147,9 @@ float visibility_of_vpl(uint map, VplPose pose, Surface surface) {
     float reach = reach_of_texel(frame);
     vec4 own = depths_of_plane(seen, at, facing);
     vec4 planes = depths_at(seen, point);
-    float slack = hiding_slack(seen, own, planes, own_depth, reach);
+    vec4 slack = hiding_slack(seen, planes, facing, reach);
     vec4 before = vec4(greaterThan(seen.depth, own));
-    vec4 hides = before * vec4(greaterThan(planes, vec4(own_depth * (1.0 + slack))));
+    vec4 hides = before * vec4(greaterThan(planes, own_depth * (1.0 + slack)));
     if (most(hides) > least(hides)) hides = with_unseeing(hides, seen, planes, own_depth, reach);
     return dot(seen.weight, 1.0 - hides);
 }
