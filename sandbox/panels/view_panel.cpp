@@ -76,7 +76,8 @@ void draw_reference(AppState& state, const ReferenceView& reference, double fram
     if (!state.error || !picture->noise || *picture->noise > measurable) {
         return text("too noisy to measure with, so far");
     }
-    text(fmt::format("relMSE {:.4f} in {:.1f} ms a frame", *state.error, frame_ms));
+    text(fmt::format("relMSE {:.4f} in {:.1f} ms a frame", state.error->rel_mse, frame_ms));
+    text(fmt::format("blotches {:.4f}, FLIP {:.3f}", state.error->blotch, state.error->flip));
     text(fmt::format("of that, noise of the reference: {:.4f}", *picture->noise));
 }
 

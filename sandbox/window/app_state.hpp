@@ -9,6 +9,7 @@
 #include <glm/vec3.hpp>
 
 #include <candela/configuration.hpp>
+#include "sandbox/window/reference_view.hpp"
 
 namespace candela::sandbox {
 
@@ -46,9 +47,9 @@ struct AppState {
     bool reference = false;
     /// What the scene's file asks for and the picture lacks, and what the renderer left out.
     std::vector<std::string> warnings;
-    std::vector<std::string> errors;  ///< of the last thing that failed
-    std::optional<double> error;      ///< relMSE of the picture over the reference
-    std::string notice;               ///< what was last done, for example which file was written
+    std::vector<std::string> errors;       ///< of the last thing that failed
+    std::optional<ReferenceErrors> error;  ///< of the picture over the reference
+    std::string notice;                    ///< what was last done, for example which file was written
 };
 
 }  // namespace candela::sandbox

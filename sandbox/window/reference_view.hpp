@@ -13,6 +13,13 @@ namespace candela::sandbox {
 /// Makes a reference, or null where the path tracer is not built in; see tools::make_live_reference.
 using MakeReference = std::function<std::unique_ptr<tools::LiveReference>(std::function<void()> notify)>;
 
+/// How a picture differs from the reference.
+struct ReferenceErrors {
+    double rel_mse = 0.0;  ///< see tools::relative_mse
+    double blotch = 0.0;   ///< see tools::blotch; of pictures of reduced size, as flip
+    double flip = 0.0;     ///< see tools::flip_of_light
+};
+
 /// The reference of what the window shows: it is traced while nothing changes.
 class ReferenceView {
  public:
@@ -32,8 +39,8 @@ class ReferenceView {
     /// The radiance of `picture`, for the render thread; null until the first picture.
     [[nodiscard]] const std::shared_ptr<const tools::Picture>& radiance() const { return radiance_; }
     [[nodiscard]] const std::string& fault() const { return fault_; }
-    /// The relMSE of a picture over the reference; nullopt if they cannot be compared yet.
-    [[nodiscard]] std::optional<double> error_of(const tools::Picture& shown) const;
+    /// The errors of a picture over the reference; nullopt if they cannot be compared yet.
+    [[nodiscard]] std::optional<ReferenceErrors> errors_of(const tools::Picture& shown) const;
 
  private:
     std::unique_ptr<tools::LiveReference> tracer_;

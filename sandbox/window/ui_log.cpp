@@ -70,7 +70,8 @@ Json lasting(const SessionState& state, const UiFrame& frame) {
               {"view", to_json(state.selection.resource)},
               {"errors", Json::array({app.errors.begin(), app.errors.end()})},
               {"refined", report != nullptr ? report->refined : 0},
-              {"rel_mse", to_json(app.error)},
+              {"rel_mse", app.error ? Json(app.error->rel_mse) : Json()},
+              {"flip", app.error ? Json(app.error->flip) : Json()},
               {"controls", std::move(controls)}};
     if (state.document) json.update(to_json(*state.document));
     return json;

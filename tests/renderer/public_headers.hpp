@@ -22,6 +22,7 @@
 #include <candela/scene/tangents.hpp>
 #include <candela/settings.hpp>
 #include <candela/tools/capture.hpp>
+#include <candela/tools/flip.hpp>
 #include <candela/tools/live_reference.hpp>
 #include <candela/tools/output_file.hpp>
 #include <candela/tools/picture_error.hpp>

@@ -211,9 +211,9 @@ TEST_CASE("errors name the file, or the name that is neither a file nor a shippe
          {(folder / "none.json").string(), std::string("orbit"), std::string("/tmp")}) {
         const std::string error = error_of([&] { static_cast<void>(load_script(wanted)); });
         CHECK(error.starts_with(wanted + ": "));
-        CHECK(
-            error.ends_with("boxes-fall, door-opens, flicker-walk, orbit-camera, orbit-light, teleport, "
-                            "toggle, walk-in"));
+        CHECK(error.ends_with(
+            "boxes-fall, door-opens, flicker-walk, lamp-in-rooms, orbit-camera, orbit-light, teleport, "
+            "toggle, walk-in"));
     }
 }
 

@@ -42,11 +42,15 @@ TEST_CASE("the error over the reference is known where pictures can be compared"
     tools::Picture faulty = same;
     faulty.pixels[0].g = std::numeric_limits<float>::quiet_NaN();
     const ReferenceView view = view_of({1, 1});
-    CHECK(view.error_of(same) == 0.0);
-    CHECK_FALSE(view.error_of(faulty));
-    CHECK_FALSE(view.error_of({{1, 1}, {glm::vec3(1.0F)}}));
-    CHECK_FALSE(view_of({0, 0}).error_of(same));  // no surface is seen
-    CHECK_FALSE(ReferenceView().error_of(same));
+    const auto none = view.errors_of(same);
+    REQUIRE(none);
+    CHECK(none->rel_mse == 0.0);
+    CHECK(none->blotch == 0.0);
+    CHECK(none->flip == 0.0);
+    CHECK_FALSE(view.errors_of(faulty));
+    CHECK_FALSE(view.errors_of({{1, 1}, {glm::vec3(1.0F)}}));
+    CHECK_FALSE(view_of({0, 0}).errors_of(same));  // no surface is seen
+    CHECK_FALSE(ReferenceView().errors_of(same));
 }
 }  // TEST_SUITE("reference view")
 

@@ -9,10 +9,10 @@
 #include <glm/common.hpp>
 #include <glm/vector_relational.hpp>
 
+#include <candela/tools/flip.hpp>
 #include <candela/tools/output_file.hpp>
 #include <candela/tools/picture.hpp>
 #include "tests/sandbox/picture_reader.hpp"
-#include "tests/study/flip.hpp"
 #include "tests/study/heat.hpp"
 #include "tests/study/measures.hpp"
 
@@ -89,7 +89,7 @@ std::string compare(const Comparison& comparison) {
     add("bias", errors.bias);
     add("spikes", errors.spikes);
     add("blotch", errors.blotch);
-    add("FLIP", flip(picture, reference, hit).mean);
+    add("FLIP", tools::flip_of_light(picture, reference, hit).mean);
     if (!comparison.heat) return text;
     const HeatMap heat = heat_map(picture, reference, hit, comparison.scale);
     tools::write_png(*comparison.heat, heat.size, heat.rgb);

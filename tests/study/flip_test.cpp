@@ -1,4 +1,5 @@
-#include "tests/study/flip.hpp"
+#include <candela/tools/flip.hpp>
+#include <candela/tools/picture_error.hpp>
 
 #include <algorithm>
 #include <cmath>
@@ -12,6 +13,9 @@ namespace candela::study {
 
 TEST_SUITE("flip") {
 
+using tools::flip;
+using tools::Flip;
+using tools::Mask;
 using tools::Picture;
 
 namespace {
@@ -165,6 +169,27 @@ TEST_CASE("pixels outside the mask are excluded from the mean") {
     CHECK(one.mean == all.map[0]);
     CHECK_THROWS_AS((void)flip(picture, noise({3, 3}, 1)), tools::ToolError);
 }
+TEST_CASE("light is compared as it is shown, with the exposure of the reference") {
+    // All light times 2^k: another exposure, and the same difference.
+    const Picture reference = noise(shape, 1), other = noise(shape, 2);
+    const auto scaled = [](Picture picture, float factor) {
+        for (glm::vec3& pixel : picture.pixels) pixel *= factor;
+        return picture;
+    };
+    const double usual = tools::flip_of_light(other, reference).mean;
+    CHECK(usual > 0.1);
+    CHECK(tools::flip_of_light(scaled(other, 64.0F), scaled(reference, 64.0F)).mean ==
+          doctest::Approx(usual).epsilon(1e-3));
+    // A picture that is darker as a whole differs, as it is not exposed for itself.
+    CHECK(tools::flip_of_light(scaled(reference, 0.25F), reference).mean > 0.1);
+    CHECK(tools::flip_of_light(reference, reference).mean == 0.0);
+    // A uniform picture is shown as 18 % grey, and one of four stops more as the curve has it.
+    const double grey_18 = (0.18 * (2.51 * 0.18 + 0.03)) / (0.18 * (2.43 * 0.18 + 0.59) + 0.14);
+    const Picture shown = tools::displayed(grey(0.5F), tools::automatic_exposure(grey(0.5F)));
+    CHECK(shown.pixels[3].g == doctest::Approx(grey_18).epsilon(1e-3));
+    CHECK(tools::automatic_exposure(grey(0.0F)) == 1.0);
+}
+
 }  // TEST_SUITE("flip")
 
 }  // namespace candela::study

@@ -8,10 +8,10 @@
 
 #include <candela/headless_context.hpp>
 #include <candela/tools/capture.hpp>
+#include <candela/tools/flip.hpp>
 #include "renderer/frame/build_frame.hpp"
 #include "renderer/passes/view/view.hpp"
 #include "sandbox/scene/scene.hpp"
-#include "tests/study/flip.hpp"
 #include "tests/study/heat.hpp"
 #include "tests/study/reference_files.hpp"
 #include "tests/study/rendering.hpp"
@@ -166,7 +166,7 @@ Seeds measure_seeds(Bench& bench, Configuration configuration, const std::vector
         Picture total = truth.emission ? render(bench, configuration, Show::total) : sum(direct, indirect);
         result.indirect.push_back(measure(indirect, truth.indirect, truth.hit));
         result.total.push_back(measure(total, truth.total, truth.hit));
-        result.flip.push_back(flip(total, truth.total, truth.hit).mean);
+        result.flip.push_back(tools::flip_of_light(total, truth.total, truth.hit).mean);
         if (result.first.pixels.empty()) result.first = std::move(total);
     }
     return result;

@@ -129,7 +129,7 @@ std::optional<double> rel_mse_of_blocks(const Picture& picture, const Picture& r
     const auto of_hits = [&](Picture of, auto value) {
         for (std::size_t i = 0; i < hit.size(); ++i)
             of.pixels[i] = hit[i] != 0 ? value(of.pixels[i]) : glm::vec3(0.0F);
-        return scaled_down(of, side);
+        return tools::scaled_down(of, side);
     };
     const Picture shares = of_hits(picture, [](const glm::vec3&) { return glm::vec3(1.0F); });
     Mask blocks(shares.pixels.size());
@@ -142,20 +142,6 @@ std::optional<double> rel_mse_of_blocks(const Picture& picture, const Picture& r
         return sums;
     };
     return tools::relative_mse(means(picture), means(reference), blocks);
-}
-
-Picture scaled_down(const Picture& picture, int factor) {
-    const glm::ivec2 size = picture.size / factor;
-    const auto share = 1.0F / static_cast<float>(factor * factor);
-    const auto index = [](glm::ivec2 of, int x, int y) { return static_cast<std::size_t>(y * of.x + x); };
-    Picture small{size, std::vector<glm::vec3>(index(size, 0, size.y))};
-    for (int y = 0; y < size.y * factor; ++y) {
-        for (int x = 0; x < size.x * factor; ++x) {
-            small.pixels[index(size, x / factor, y / factor)] +=
-                share * picture.pixels[index(picture.size, x, y)];
-        }
-    }
-    return small;
 }
 
 }  // namespace candela::study

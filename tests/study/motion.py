@@ -78,6 +78,7 @@ def world_motions() -> list[Motion]:
     all_of_it, in_time = Take("surfels", config), Take("budget", matrix.merged(config, {"frame_budget_ms": 60}))
     return [
         Motion("worlds", "walk-in", matrix.SMALL, reference, 120, (all_of_it,)),
+        Motion("worlds", "lamp-in-rooms", matrix.SMALL, reference, 60, (all_of_it,)),
         Motion("worlds", "boxes-fall", matrix.SMALL, reference, 40, (all_of_it, in_time)),
     ]
 

@@ -1,4 +1,4 @@
-#include "tests/study/flip.hpp"
+#include <candela/tools/flip.hpp>
 
 #include <algorithm>
 #include <array>
@@ -8,14 +8,15 @@
 #include <utility>
 
 #include <glm/common.hpp>
+#include <glm/geometric.hpp>
 #include <glm/mat3x3.hpp>
 #include <glm/matrix.hpp>
 #include <glm/vec3.hpp>
 
-namespace candela::study {
-namespace {
+#include <candela/tools/picture_error.hpp>
 
-using tools::Picture;
+namespace candela::tools {
+namespace {
 
 constexpr double pi = std::numbers::pi;
 // A screen of 3840 pixels, 0.7 m wide, seen from 0.7 m.
@@ -230,15 +231,12 @@ double feature_difference(const Features& a, const Features& b, std::size_t pixe
     return std::sqrt(difference / std::numbers::sqrt2);
 }
 
-double mean_of(const std::vector<double>& map, std::span<const std::uint8_t> hit) {
-    double sum = 0.0;
-    double count = 0.0;
-    for (std::size_t i = 0; i < map.size(); ++i) {
-        if (!counts(hit, i)) continue;
-        sum += map[i];
-        count += 1.0;
-    }
-    return sum / count;
+// ---- Display
+
+/// Narkowicz, "ACES Filmic Tone Mapping Curve", 2015; white long before light is 1e4.
+glm::dvec3 filmic(glm::dvec3 light) {
+    const glm::dvec3 x = glm::min(light, 1e4);
+    return glm::clamp(x * (2.51 * x + 0.03) / (x * (2.43 * x + 0.59) + 0.14), 0.0, 1.0);
 }
 
 }  // namespace
@@ -258,8 +256,36 @@ Flip flip(const Picture& picture, const Picture& reference, std::span<const std:
         const double colour = redistributed(distance(a_colours[i], b_colours[i]), largest);
         result.map.push_back(std::pow(colour, 1.0 - feature_difference(a_features, b_features, i)));
     }
-    result.mean = mean_of(result.map, hit);
+    result.mean = mean_over(result.map.size(), hit, [&](std::size_t i) { return result.map[i]; });
     return result;
 }
 
-}  // namespace candela::study
+Flip flip_of_light(const Picture& picture, const Picture& reference, std::span<const std::uint8_t> hit) {
+    require_comparable(picture, reference, hit);
+    const double exposure = automatic_exposure(reference);
+    return flip(displayed(picture, exposure), displayed(reference, exposure), hit);
+}
+
+double automatic_exposure(const Picture& radiance) {
+    constexpr double faint = 0x1p-16;  // see ToneMapSettings
+    double sum = 0.0, weights = 0.0;
+    for (const glm::vec3& pixel : radiance.pixels) {
+        const double luminance = glm::dot(glm::dvec3(pixel), {0.2126, 0.7152, 0.0722});
+        if (!(luminance > 0.0)) continue;
+        const double weight = 1.0 / (1.0 + faint / luminance);
+        sum += weight * std::log2(luminance);
+        weights += weight;
+    }
+    return weights > 0.0 ? std::clamp(0.18 / std::exp2(sum / weights), 0x1p-10, 0x1p10) : 1.0;
+}
+
+Picture displayed(const Picture& radiance, double exposure) {
+    Picture shown{radiance.size, {}};
+    shown.pixels.reserve(radiance.pixels.size());
+    for (const glm::vec3& pixel : radiance.pixels) {
+        shown.pixels.emplace_back(filmic(exposure * glm::dvec3(pixel)));
+    }
+    return shown;
+}
+
+}  // namespace candela::tools
