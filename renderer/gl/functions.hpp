@@ -50,6 +50,7 @@
     X(GetError, GETERROR) \
     X(GetString, GETSTRING) \
     X(GetStringi, GETSTRINGI) \
+    X(GetFramebufferAttachmentParameteriv, GETFRAMEBUFFERATTACHMENTPARAMETERIV) \
     X(GetIntegerv, GETINTEGERV) \
     X(GetIntegeri_v, GETINTEGERI_V) \
     X(GetInteger64i_v, GETINTEGER64I_V) \

@@ -19,10 +19,10 @@ const NamedConfiguration* named_in(const Options& options) {
     return named != nullptr && !std::filesystem::exists(*options.config, ignored) ? named : nullptr;
 }
 
-Configuration read_over(const Configuration& base, const Options& options, const std::string& file) {
+Configuration read_over(const Configuration& base, const Options& options) {
     if (!options.config) return base;
     if (const NamedConfiguration* named = named_in(options)) return choose_named(base, *named);
-    const ConfigurationResult result = read_configuration(file, base);
+    const ConfigurationResult result = read_configuration(read_file(*options.config), base);
     if (result.configuration) return *result.configuration;
     throw std::runtime_error(fmt::format("{}: {}", options.config->string(), fmt::join(result.errors, "; ")));
 }
@@ -32,36 +32,18 @@ bool is_one_picture_of_many_frames(const Options& options) {
     return one_picture && options.frames.value_or(1) > 1 && !options.animate;
 }
 
-/// What the file, of this content, and the flags make of `base`.
-Configuration overridden(const Configuration& base, const Options& options, const std::string& file) {
-    Configuration configuration = read_over(base, options, file);
+}  // namespace
+
+Configuration choose_configuration(const Options& options, bool in_window) {
+    Configuration base;
+    base.tone_map.automatic_exposure = true;
+    base.refinement.enabled = in_window || is_one_picture_of_many_frames(options);
+    if (in_window) base.frame_budget_ms.reset();
+    Configuration configuration = read_over(base, options);
     apply_settings(options, configuration);
     const std::vector<std::string> errors = validate(configuration);
     if (!errors.empty()) throw std::runtime_error(fmt::format("{}", fmt::join(errors, "; ")));
     return configuration;
-}
-
-/// Whether both values of each setting differ, as what is given is the same whatever it replaces.
-bool differ(const ToneMapSettings& a, const ToneMapSettings& b) {
-    return a.exposure_ev != b.exposure_ev && a.automatic_exposure != b.automatic_exposure;
-}
-
-}  // namespace
-
-ChosenConfiguration choose_with_exposure(const Options& options, bool in_window) {
-    Configuration base;
-    base.refinement.enabled = in_window || is_one_picture_of_many_frames(options);
-    if (in_window) base.frame_budget_ms.reset();
-    const bool has_file = options.config && named_in(options) == nullptr;
-    const std::string file = has_file ? read_file(*options.config) : "";  // once: it may be a pipe
-    const Configuration chosen = overridden(base, options, file);
-    base.tone_map.exposure_ev += 1.0F;
-    base.tone_map.automatic_exposure = !base.tone_map.automatic_exposure;
-    return {chosen, differ(chosen.tone_map, overridden(base, options, file).tone_map)};
-}
-
-Configuration choose_configuration(const Options& options, bool in_window) {
-    return choose_with_exposure(options, in_window).configuration;
 }
 
 Configuration choose_named(const Configuration& present, const NamedConfiguration& named) {

@@ -9,19 +9,11 @@
 namespace candela::sandbox {
 
 /// The defaults, overridden by the configuration file or the named configuration, which are overridden by the
-/// flags. In a window the default frame budget is "auto", and refinement is on by default because users look
-/// at still pictures. Refinement is also on by default if many frames of a still scene are rendered into one
-/// picture. Throws std::runtime_error with a one-line message that names the file and all errors.
+/// flags. The exposure is automatic by default, as lights of files may have any brightness. In a window the
+/// default frame budget is "auto", and refinement is on by default because users look at still pictures.
+/// Refinement is also on by default if many frames of a still scene are rendered into one picture. Throws
+/// std::runtime_error with a one-line message that names the file and all errors.
 [[nodiscard]] Configuration choose_configuration(const Options& options, bool in_window);
-
-/// The same configuration, and whether it leaves the exposure open: neither the file nor a flag gives
-/// tone_map.exposure_ev or tone_map.automatic_exposure. The app then chooses it for each scene: see
-/// SceneExposure.
-struct ChosenConfiguration {
-    Configuration configuration;
-    bool leaves_exposure_open = true;
-};
-[[nodiscard]] ChosenConfiguration choose_with_exposure(const Options& options, bool in_window);
 
 /// A named configuration with the refinement, the frame budget, the tone map and the view of `present`: its
 /// name only says how a frame is computed.

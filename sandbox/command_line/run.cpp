@@ -29,7 +29,6 @@
 #include "sandbox/headless/report.hpp"
 #include "sandbox/scene/environment.hpp"
 #include "sandbox/scene/scene.hpp"
-#include "sandbox/scene/scene_exposure.hpp"
 #include "sandbox/scene/studio.hpp"
 #include "sandbox/window/run_window.hpp"
 #include "sandbox/window/window.hpp"
@@ -124,22 +123,12 @@ Scene open_scene(const Options& options, const TellProgress& tell) {
     return scene;
 }
 
-/// The configuration for a scene, with an exposure if the picture is to be looked at: others are linear.
-Configuration exposed(ChosenConfiguration chosen, const Scene& scene, const Options& options) {
-    const std::optional<std::filesystem::path> out = picture_path(options);
-    if (out && tools::lower_extension(*out) == ".png") {
-        SceneExposure(chosen.leaves_exposure_open).choose(scene.path, chosen.configuration.tone_map);
-    }
-    return chosen.configuration;
-}
-
 ExitStatus run_session(const Options& options, const MakeReference& make_reference) {
     ConfigWatch watch(options);
     const bool windowed = wants_window(options);
-    ChosenConfiguration chosen = choose_with_exposure(options, windowed);
+    Configuration chosen = choose_configuration(options, windowed);
     if (options.list_configs || options.print_config) {
-        fmt::print("{}", options.list_configs ? list_configurations()
-                                              : write_configuration(chosen.configuration) + "\n");
+        fmt::print("{}", options.list_configs ? list_configurations() : write_configuration(chosen) + "\n");
         return success;
     }
     std::vector<std::string> tried;
@@ -156,8 +145,8 @@ ExitStatus run_session(const Options& options, const MakeReference& make_referen
     const glm::ivec2 size = options.size.value_or(headless_size);
     const Entity camera = choose_camera(scene.world, options.camera, aspect(size));
     const std::unique_ptr<HeadlessContext> context = open_headless(options.context, tried);
-    if (windowed) chosen = choose_with_exposure(options, false);
-    return run_headless(*context, scene, camera, exposed(chosen, scene, options), options, size);
+    if (windowed) chosen = choose_configuration(options, false);
+    return run_headless(*context, scene, camera, chosen, options, size);
 }
 
 }  // namespace

@@ -7,7 +7,7 @@
 
 namespace candela::sandbox {
 
-void run_window(Window& window, const OpenScene& open, const ChosenConfiguration& chosen, ConfigWatch& watch,
+void run_window(Window& window, const OpenScene& open, const Configuration& chosen, ConfigWatch& watch,
                 const Options& options, const MakeReference& make_reference) {
     WindowSession session(window, open, chosen, watch, options, make_reference);
     session.run();

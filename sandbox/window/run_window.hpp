@@ -21,7 +21,7 @@ namespace candela::sandbox {
 /// Throws what `open` throws, std::runtime_error for outputs that cannot be written, gl::GlError, and
 /// PictureError if the light does not add up. Ends the process if the window is closed while a frame takes
 /// longer than a user should wait, because drivers do not interrupt frames.
-void run_window(Window& window, const OpenScene& open, const ChosenConfiguration& chosen, ConfigWatch& watch,
+void run_window(Window& window, const OpenScene& open, const Configuration& chosen, ConfigWatch& watch,
                 const Options& options, const MakeReference& make_reference);
 
 }  // namespace candela::sandbox

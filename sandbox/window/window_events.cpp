@@ -82,22 +82,12 @@ void WindowSession::take_loaded_scene() {
     }
     cut_ = true;
     last_animated_ = Clock::now();
-    choose_exposure();
     if (!first) {
         state_.app.errors.clear();
         state_.app.notice.clear();
         add_recent_file(recent_files_list(), std::filesystem::absolute(state_.document->scene.path));
     }
     announce_scene();
-}
-
-/// Also of the configuration beside it, if that is exposed alike.
-void WindowSession::choose_exposure() {
-    ToneMapSettings& shown = state_.app.configuration.tone_map;
-    Comparison& comparison = state_.app.comparison;
-    const bool alike = comparison.mode != CompareMode::off && comparison.other.tone_map == shown;
-    exposure_.choose(state_.document->scene.path, shown);
-    if (alike) comparison.other.tone_map = shown;
 }
 
 void WindowSession::announce_scene() {
@@ -134,12 +124,7 @@ void WindowSession::take_saved_configuration() {
     const std::optional<ConfigurationResult> saved = watch_.poll(SaveWatch::Clock::now());
     if (!saved) return;
     report_errors(saved->errors);
-    if (!saved->configuration) return;
-    state_.app.configuration = *saved->configuration;
-    attempt([&] {
-        exposure_ = SceneExposure(choose_with_exposure(options_, true).leaves_exposure_open);
-        if (state_.document) choose_exposure();
-    });
+    if (saved->configuration) state_.app.configuration = *saved->configuration;
 }
 
 void WindowSession::take_saved_shaders() {

@@ -24,16 +24,11 @@ using Seconds = std::chrono::duration<double>;
 
 }  // namespace
 
-WindowSession::WindowSession(Window& window, const OpenScene& open, const ChosenConfiguration& chosen,
+WindowSession::WindowSession(Window& window, const OpenScene& open, const Configuration& chosen,
                              ConfigWatch& watch, const Options& options, const MakeReference& make_reference)
-    : window_(window),
-      watch_(watch),
-      options_(options),
-      shader_saves_(options.shaders),
-      gui_(window),
-      exposure_(chosen.leaves_exposure_open) {
+    : window_(window), watch_(watch), options_(options), shader_saves_(options.shaders), gui_(window) {
     constexpr double default_budget_ms = 60.0;
-    state_.app.configuration = chosen.configuration;
+    state_.app.configuration = chosen;
     state_.app.update_budget_ms = options.update_budget.value_or(default_budget_ms);
     if (make_reference) state_.reference = ReferenceView(make_reference(Window::wake));
     if (options.ui_log) log_.emplace(*options.ui_log);
@@ -128,7 +123,7 @@ void WindowSession::follow_reference() {
 void WindowSession::measure_error() {
     redraw_.changed_once();
     const bool is_read = state_.shown && state_.shown->radiance;
-    state_.app.error = is_read ? state_.reference.error_of(*state_.shown->radiance) : std::nullopt;
+    state_.app.error = is_read ? state_.reference.errors_of(*state_.shown->radiance) : std::nullopt;
 }
 
 glm::uvec2 WindowSession::picture_size() const {

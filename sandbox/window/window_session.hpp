@@ -22,7 +22,6 @@
 #include "sandbox/files/config_watch.hpp"
 #include "sandbox/files/save_watch.hpp"
 #include "sandbox/panels/open_panel.hpp"
-#include "sandbox/scene/scene_exposure.hpp"
 #include "sandbox/window/gui.hpp"
 #include "sandbox/window/redraw.hpp"
 #include "sandbox/window/reference_view.hpp"
@@ -56,8 +55,8 @@ class Lines {
 /// does what the user has chosen.
 class WindowSession {
  public:
-    WindowSession(Window& window, const OpenScene& open, const ChosenConfiguration& chosen,
-                  ConfigWatch& watch, const Options& options, const MakeReference& make_reference);
+    WindowSession(Window& window, const OpenScene& open, const Configuration& chosen, ConfigWatch& watch,
+                  const Options& options, const MakeReference& make_reference);
 
     /// Until the window is closed, or the requested number of frames is done.
     void run();
@@ -112,7 +111,6 @@ class WindowSession {
     void save_picture();
     void report_errors(std::vector<std::string> errors);
     void announce_scene();
-    void choose_exposure();
 
     Window& window_;
     ConfigWatch& watch_;
@@ -133,7 +131,6 @@ class WindowSession {
     std::optional<Clock::time_point> input_;           ///< the oldest that no request answers yet
     std::optional<Clock::time_point> answered_input_;  ///< by the picture that is shown for the first time
 
-    SceneExposure exposure_;
     std::vector<FrameReport> reports_;
     std::shared_ptr<const GraphDescription> graph_;  // that state_ has
     OpenPanel open_panel_;

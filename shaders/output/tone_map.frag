@@ -13,6 +13,7 @@ uniform float exposure;
 uniform uint curve;          // TONE_CURVE_*
 uniform bool encoded;
 uniform bool opaque;
+uniform float colour_step;   // between two colours that the target tells apart
 uniform vec2 target_origin;  // in the framebuffer, pixels
 uniform vec2 target_size;
 
@@ -31,6 +32,10 @@ vec4 scaled_radiance(vec2 pixel, vec2 size) {
     return mix(low, high, share.y);
 }
 
+// Noise in (-0.5, 0.5), whose mean over neighbours is nearly 0: Jimenez, "Next Generation Post Processing in Call of Duty:
+// Advanced Warfare" (2014), "interleaved gradient noise". 0.99: values that the target has stay as they are.
+float dither(vec2 pixel) { return 0.99 * (fract(52.9829189 * fract(dot(pixel, vec2(0.06711056, 0.00583715)))) - 0.5); }
+
 void main() {
     vec2 size = vec2(textureSize(radiance, 0));
     vec2 pixel = gl_FragCoord.xy - target_origin;
@@ -40,6 +45,7 @@ void main() {
     shown *= exposures[0].x;
 #endif
     shown = tone_curve(curve, shown);
-    if (encoded) shown = srgb_encode(shown);
+    // Rounded as they are, slow gradients would have bands.
+    if (encoded) shown = srgb_encode(shown) + colour_step * dither(pixel);
     colour = vec4(shown, opaque ? 1.0 : linear.a);
 }

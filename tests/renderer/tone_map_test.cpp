@@ -10,10 +10,13 @@
 #include <glm/matrix.hpp>
 #include <glm/vec3.hpp>
 #include <limits>
+#include <random>
 #include <string>
 #include <vector>
 
+#include <candela/tools/flip.hpp>
 #include "tests/renderer/path_fixture.hpp"
+#include "tests/seed.hpp"
 
 TEST_SUITE("tone map") {
 
@@ -248,6 +251,70 @@ TEST_CASE_FIXTURE(ToneMapTests, "what is not finite or negative does not count")
     const Picture shown = mapped(radiance);
     for (std::size_t i = 0; i < pixels; ++i) {
         if (i % 5 != 0) REQUIRE(shown.pixels[i] == black.pixels[i]);
+    }
+}
+
+TEST_CASE_FIXTURE(ToneMapTests,
+                  "a slow gradient has no bands in 8 bits, and what 8 bits have stays as it is") {
+    // Ten steps of 1/255 over 320 pixels, which would be bands of 32 pixels.
+    constexpr glm::uvec2 shape(320, 16);
+    std::vector<glm::vec3> radiance;
+    const auto colour = [](std::size_t x) { return (90.0 + static_cast<double>(x) / 32.0) / 255.0; };
+    for (std::size_t i = 0; i < std::size_t{shape.x} * shape.y; ++i) {
+        radiance.emplace_back(static_cast<float>(decoded(colour(i % shape.x))));
+    }
+    // Albedo is encoded, without a curve.
+    Configuration configuration = linear_configuration();
+    configuration.tone_map = {.enabled = true};
+    configuration.show = Show::albedo;
+    configure(configuration);
+    const auto shown = [&](const std::vector<glm::vec3>& of, Format format) {
+        const RenderTarget target(device, shape, format);
+        renderer.tone_map(of, target.target());
+        return target.read();
+    };
+    const auto error_of_blocks = [&](const Picture& picture) {
+        double worst = 0.0;
+        for (std::uint32_t x = 0; x < shape.x; x += 8) {
+            double sum = 0.0, expected = 0.0;
+            for (std::uint32_t i = 0; i < 128; ++i) {
+                sum += double{picture.at(x + i % 8, i / 8).g} / 128.0;
+                expected += colour(x + i % 8) / 128.0;
+            }
+            worst = std::max(worst, std::abs(sum - expected));
+        }
+        return worst;
+    };
+    // Rounding to the nearest colour is off by up to half a step. Independent noise of one step would have a
+    // deviation of at most 0.5 / √128 = 0.044 steps; this noise is more even.
+    CHECK(error_of_blocks(shown(radiance, Format::rgba8)) < 0.1 / 255.0);
+    CHECK(error_of_blocks(shown(radiance, Format::rgba32f)) < 1e-5);
+    for (const int level : {0, 1, 17, 128, 254, 255}) {
+        CAPTURE(level);
+        const std::vector<glm::vec3> even(radiance.size(),
+                                          glm::vec3(static_cast<float>(decoded(level / 255.0))));
+        const Picture picture = shown(even, Format::rgba8);
+        for (const glm::vec3 pixel : picture.pixels) {
+            REQUIRE(pixel.r == doctest::Approx(level / 255.0).epsilon(1e-6));
+        }
+    }
+}
+
+TEST_CASE_FIXTURE(ToneMapTests, "the tools expose and show a picture in the same way") {
+    std::mt19937 engine(test_seed());
+    std::uniform_real_distribution<float> stops(-12.0F, 4.0F);
+    tools::Picture radiance{glm::ivec2(size), {}};
+    for (std::size_t i = 0; i < pixels; ++i) {
+        const float level = i % 7 == 0 ? 0.0F : std::exp2(stops(engine));
+        radiance.pixels.push_back(level * glm::vec3(1.0F, 0.6F, 0.3F));
+    }
+    set(automatic);
+    const Picture shown = mapped(radiance.pixels);
+    const tools::Picture again = tools::displayed(radiance, tools::automatic_exposure(radiance));
+    for (std::size_t i = 0; i < pixels; ++i) {
+        for (int c = 0; c < 3; ++c) {
+            REQUIRE(std::abs(encoded(double{again.pixels[i][c]}) - double{shown.pixels[i][c]}) < rounding);
+        }
     }
 }
 

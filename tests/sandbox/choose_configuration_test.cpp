@@ -12,9 +12,10 @@ namespace candela::sandbox {
 
 TEST_SUITE("choosing a configuration") {
 
-TEST_CASE("without options it is the default, with refinement and a frame budget in a window") {
-    CHECK(choose_configuration({}, false) == Configuration{});
+TEST_CASE("without options it is the default, exposed, with refinement and a frame budget in a window") {
     Configuration refined;
+    refined.tone_map.automatic_exposure = true;
+    CHECK(choose_configuration({}, false) == refined);
     refined.refinement.enabled = true;
     refined.frame_budget_ms = std::nullopt;
     CHECK(choose_configuration({}, true) == refined);
@@ -52,39 +53,27 @@ TEST_CASE("flags override the file") {
     CHECK(configuration.path == ShadingPath::deferred);
 }
 
-TEST_CASE("the exposure is open unless the file or a flag gives one, even that of the default") {
+TEST_CASE("the exposure is automatic unless the file or a flag turns that off, and stops are on top of it") {
     const TemporaryFolder folder;
-    const auto is_open = [](const Options& options) {
-        const ChosenConfiguration chosen = choose_with_exposure(options, true);
-        CHECK(chosen.configuration == choose_configuration(options, true));
-        if (chosen.leaves_exposure_open) {
-            CHECK_FALSE(chosen.configuration.tone_map.automatic_exposure);
-            CHECK(chosen.configuration.tone_map.exposure_ev == 0.0F);
-        }
-        return chosen.leaves_exposure_open;
+    const auto tone_map = [](const Options& options) {
+        return choose_configuration(options, false).tone_map;
     };
-    CHECK(is_open({}));
-    Options file;
-    file.config = folder / "a.json";
-    for (const char* text : {"{}", R"({"tone_map": {"curve": "aces"}})"}) {
-        std::ofstream(*file.config) << text;
-        CHECK(is_open(file));
-    }
-    for (const char* text : {R"({"exposure_ev": 0})", R"({"exposure_ev": 1})",
-                             R"({"automatic_exposure": false})", R"({"automatic_exposure": true})"}) {
-        CAPTURE(text);
-        std::ofstream(*file.config) << R"({"tone_map": )" << text << "}";
-        CHECK_FALSE(is_open(file));
-    }
+    const ToneMapSettings automatic{.automatic_exposure = true};
+    CHECK(tone_map({}) == automatic);
+    CHECK(choose_configuration({}, true).tone_map == automatic);
     Options named;
     named.config = "best";
-    CHECK(is_open(named));
-    for (const char* flag : {"--exposure=0", "--exposure=2", "--automatic-exposure=off"}) {
-        CAPTURE(flag);
-        const std::string text = flag;
-        named.settings = {{text.substr(0, text.find('=')), text.substr(text.find('=') + 1)}};
-        CHECK_FALSE(is_open(named));
-    }
+    CHECK(tone_map(named) == automatic);
+    Options file;
+    file.config = folder / "a.json";
+    std::ofstream(*file.config) << R"({"tone_map": {"exposure_ev": 1}})";
+    CHECK(tone_map(file) == ToneMapSettings{.exposure_ev = 1.0F, .automatic_exposure = true});
+    file.settings["--exposure"] = "-2";
+    CHECK(tone_map(file) == ToneMapSettings{.exposure_ev = -2.0F, .automatic_exposure = true});
+    std::ofstream(*file.config) << R"({"tone_map": {"automatic_exposure": false}})";
+    CHECK(tone_map(file) == ToneMapSettings{.exposure_ev = -2.0F});
+    file.settings["--automatic-exposure"] = "on";
+    CHECK(tone_map(file) == ToneMapSettings{.exposure_ev = -2.0F, .automatic_exposure = true});
 }
 
 TEST_CASE("the written configuration has the requested VPL visibility") {

@@ -107,11 +107,10 @@ void for_each_setting(Config& c, const Visitor& visit) {
     row("tone_map.curve", "--tone-curve", c.tone_map.curve, {}, "from exposed light to colours",
         c.tone_map.enabled);
     row("tone_map.automatic_exposure", "--automatic-exposure", c.tone_map.automatic_exposure, {},
-        "radiance is multiplied so that its log-average in the picture becomes 18 % grey; the app's default "
-        "for files other than its own scenes, if no exposure is given",
+        "radiance is multiplied so that its log-average in the picture becomes 18 % grey; the app's default",
         c.tone_map.enabled);
     row("tone_map.exposure_ev", "--exposure", c.tone_map.exposure_ev, {-32, 32},
-        "exposure in stops: radiance is multiplied by 2 to this power");
+        "in stops: radiance is multiplied by 2 to this power, beside an automatic exposure");
 
     row("frame_budget_ms", "", c.frame_budget_ms, {0, 1e6},
         "milliseconds for a frame while something moves: to keep to it, fewer pixels are rendered, and each "

@@ -17,6 +17,21 @@ std::uint32_t number_of(std::optional<ToneCurve> curve) {
     return curve ? numbers.at(static_cast<std::size_t>(*curve)) : TONE_CURVE_NONE;
 }
 
+/// The step between two colours that the bound framebuffer's first draw buffer tells apart; 0 if it has more
+/// than 10 bits, as all floats have.
+float colour_step(const gl::Functions& gl) {
+    const GLenum buffer = gl::get_unsigned(gl, GL_DRAW_BUFFER0);
+    if (buffer == GL_NONE) return 0.0F;
+    // The default framebuffer has attachments of other names.
+    const GLenum attachment =
+        buffer == GL_BACK ? GL_BACK_LEFT : (buffer == GL_FRONT ? GL_FRONT_LEFT : buffer);
+    GLint bits = 0;
+    gl.GetFramebufferAttachmentParameteriv(GL_DRAW_FRAMEBUFFER, attachment,
+                                           GL_FRAMEBUFFER_ATTACHMENT_RED_SIZE, &bits);
+    constexpr GLint most_bits = 10;
+    return bits > most_bits ? 0.0F : 1.0F / (std::exp2(static_cast<float>(bits)) - 1.0F);
+}
+
 /// To the bound framebuffer. With the texture at UNIT_RADIANCE and, if the exposure is automatic, what
 /// find_exposure has written.
 void draw(Gpu& gpu, const gl::Program& program, const Target& target, const Display& display) {
@@ -25,7 +40,8 @@ void draw(Gpu& gpu, const gl::Program& program, const Target& target, const Disp
                                   {"exposure", display.exposure},
                                   {"curve", number_of(display.curve)},
                                   {"encoded", display.encoded},
-                                  {"opaque", display.opaque}});
+                                  {"opaque", display.opaque},
+                                  {"colour_step", display.encoded ? colour_step(gpu.gl()) : 0.0F}});
 }
 
 std::vector<std::string> stages_of_tone_map() {
