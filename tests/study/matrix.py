@@ -315,9 +315,9 @@ WORLDS = (
 QUICK_WORLDS = ("house@inside", "apartment", "rooms-12@room-2")
 
 
-def as_app(vpls: int) -> Point:
+def as_app(vpls: int, seeds: tuple[int, ...] = (0,)) -> Point:
     """The app's defaults, with this number of surfels."""
-    return point(vpls, lever="surfels", seeds=(0,))
+    return point(vpls, lever="surfels", seeds=seeds)
 
 
 def world_groups() -> list[Group]:
@@ -355,7 +355,8 @@ def quick_groups() -> list[Group]:
         + [blind(256, path) for path in PATHS]
     )
     seeing = distinct([point(n) for n in counts] + [point(256, path=path) for path in PATHS] + [blind(1024)])
-    worlds = [Group("quick-worlds", scene, QUICK, Reference(512), 0, (as_app(512),)) for scene in QUICK_WORLDS]
+    four = as_app(512, seeds=(0, 1, 2, 3))
+    worlds = [Group("quick-worlds", scene, QUICK, Reference(512), 0, (four,)) for scene in QUICK_WORLDS]
     return worlds + [
         Group(
             "quick",

@@ -452,13 +452,16 @@ class Checks(unittest.TestCase):
         self.assertFalse(all(holds for _, holds, _ in checks.obstacles_seen(rows(0.19)[1:])))
 
     def test_too_dark_and_too_wrong_a_world_fails_the_check(self) -> None:
-        def holds(bias: float, error: float) -> bool:
-            one = row("apartment", "p", 1.0, 0.5, indirect_bias=bias, indirect_rel_mse=error)
+        def holds(bias: float, error: float, blotch: float = 0.01, flip: float = 0.1) -> bool:
+            seen = {"indirect_blotch": blotch, "flip": flip}
+            one = row("apartment", "p", 1.0, 0.5, indirect_bias=bias, indirect_rel_mse=error, **seen)
             return all(right for _, right, _ in checks.worlds_right([one]))
 
         self.assertTrue(holds(-0.09, 0.03))
         self.assertFalse(holds(-0.11, 0.03))
         self.assertFalse(holds(0.0, 0.05))
+        self.assertFalse(holds(0.0, 0.03, blotch=0.02))
+        self.assertFalse(holds(0.0, 0.03, flip=0.18))
 
     def test_every_quick_world_has_limits(self) -> None:
         self.assertEqual(set(matrix.QUICK_WORLDS), set(checks.WORLDS))
