@@ -77,8 +77,8 @@ void draw_reference(AppState& state, const ReferenceView& reference, double fram
         return text("too noisy to measure with, so far");
     }
     text(fmt::format("relMSE {:.4f} in {:.1f} ms a frame", state.error->rel_mse, frame_ms));
-    text(fmt::format("blotches {:.4f}, FLIP {:.3f}", state.error->blotch, state.error->flip));
     text(fmt::format("of that, noise of the reference: {:.4f}", *picture->noise));
+    text(fmt::format("blotches {:.4f}, FLIP {:.3f}", state.error->blotch, state.error->flip));
 }
 
 }  // namespace
