@@ -78,9 +78,13 @@ Plans plans(Wiring reads) {
     return plans;
 }
 
+/// What the functions of the passes own.
+enum class Owned : std::uint8_t { nothing, vector };
+
 /// Every pass writes a texture. Passes whose result is not read have a side effect, so that nothing is
 /// culled.
-FrameGraph declare(const Plans& plans, std::vector<TextureHandle>& made, bool all_run) {
+FrameGraph declare(const Plans& plans, std::vector<TextureHandle>& made, bool all_run,
+                   Owned owned = Owned::nothing) {
     FrameGraph graph;
     std::uint64_t ran = 0;
     for (std::size_t index = 0; index < plans.reads.size(); ++index) {
@@ -89,7 +93,13 @@ FrameGraph declare(const Plans& plans, std::vector<TextureHandle>& made, bool al
                 pass.read(made[read], Usage::sampled);
             }
             if (all_run || plans.unread[index]) pass.side_effect();
-            pass.run([index, ran](Execution&) mutable { benchmark::DoNotOptimize(ran += index); });
+            if (owned == Owned::vector) {
+                pass.run([list = std::vector{index}, ran](Execution&) mutable {
+                    benchmark::DoNotOptimize(ran += list.front());
+                });
+            } else {
+                pass.run([index, ran](Execution&) mutable { benchmark::DoNotOptimize(ran += index); });
+            }
             return pass.write(graph.texture("result", {{64, 64}, Format::rgba16f}), Usage::colour_target);
         });
     }
@@ -121,11 +131,11 @@ void count(benchmark::State& state) {
         passes, benchmark::Counter::kIsIterationInvariantRate | benchmark::Counter::kInvert);
 }
 
-void build_and_compile(benchmark::State& state, Wiring (*wiring)(std::size_t)) {
+void build_and_compile(benchmark::State& state, Wiring (*wiring)(std::size_t), Owned owned = Owned::nothing) {
     const Plans plan = plans(wiring(static_cast<std::size_t>(state.range(0))));
     std::vector<TextureHandle> made(plan.reads.size());
     for (auto _ : state) {
-        benchmark::DoNotOptimize(compile(declare(plan, made, false)));
+        benchmark::DoNotOptimize(compile(declare(plan, made, false, owned)));
     }
     count(state);
 }
@@ -152,6 +162,7 @@ void sizes(benchmark::internal::Benchmark* benchmark) {
 BENCHMARK_CAPTURE(build_and_compile, chain, chain)->Apply(sizes);
 BENCHMARK_CAPTURE(build_and_compile, random_dag, random_dag)->Apply(sizes);
 BENCHMARK_CAPTURE(build_and_compile, diamonds, diamonds)->Apply(sizes);
+BENCHMARK_CAPTURE(build_and_compile, owning_chain, chain, Owned::vector)->Apply(sizes);
 BENCHMARK_CAPTURE(run_idle_passes, chain, chain)->Apply(sizes);
 BENCHMARK_CAPTURE(run_idle_passes, random_dag, random_dag)->Apply(sizes);
 BENCHMARK_CAPTURE(run_idle_passes, diamonds, diamonds)->Apply(sizes);

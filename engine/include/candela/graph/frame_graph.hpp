@@ -48,9 +48,10 @@ class Arena {
 
     template <class T>
     T* store(T value) {
-        if constexpr (!std::is_trivially_destructible_v<T>) owned_.reserve(owned_.size() + 1);
+        constexpr bool is_owned = !std::is_trivially_destructible_v<T>;
+        if constexpr (is_owned) make_room();
         T* const object = ::new (memory_.allocate(sizeof(T), alignof(T))) T(std::move(value));
-        if constexpr (!std::is_trivially_destructible_v<T>) {
+        if constexpr (is_owned) {
             owned_.push_back({object, [](void* stored) { static_cast<T*>(stored)->~T(); }});
         }
         return object;
@@ -66,6 +67,11 @@ class Arena {
         void* object;
         void (*destroy)(void*);
     };
+
+    /// For one more, so that an object that has been made is not lost.
+    void make_room() {
+        if (owned_.size() == owned_.capacity()) owned_.reserve(2 * owned_.size() + 16);
+    }
 
     std::pmr::monotonic_buffer_resource memory_;
     std::vector<Owned> owned_;
