@@ -63,7 +63,9 @@ Picture flipped(Picture picture) {
 Picture scaled_down(const Picture& picture, int factor) {
     const glm::ivec2 size = picture.size / factor;
     const auto share = 1.0F / static_cast<float>(factor * factor);
-    const auto index = [](glm::ivec2 of, int x, int y) { return static_cast<std::size_t>(y * of.x + x); };
+    const auto index = [](glm::ivec2 of, int x, int y) {
+        return static_cast<std::size_t>(y) * static_cast<std::size_t>(of.x) + static_cast<std::size_t>(x);
+    };
     Picture small{size, std::vector<glm::vec3>(index(size, 0, size.y))};
     for (int y = 0; y < size.y * factor; ++y) {
         for (int x = 0; x < size.x * factor; ++x) {
