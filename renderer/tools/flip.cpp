@@ -271,7 +271,7 @@ double automatic_exposure(const Picture& radiance) {
     double sum = 0.0, weights = 0.0;
     for (const glm::vec3& pixel : radiance.pixels) {
         const double luminance = glm::dot(glm::dvec3(pixel), {0.2126, 0.7152, 0.0722});
-        if (!(luminance > 0.0)) continue;
+        if (!(luminance > 0.0) || !std::isfinite(luminance)) continue;
         const double weight = 1.0 / (1.0 + faint / luminance);
         sum += weight * std::log2(luminance);
         weights += weight;

@@ -60,22 +60,6 @@ Picture flipped(Picture picture) {
     return picture;
 }
 
-Picture scaled_down(const Picture& picture, int factor) {
-    const glm::ivec2 size = picture.size / factor;
-    const auto share = 1.0F / static_cast<float>(factor * factor);
-    const auto index = [](glm::ivec2 of, int x, int y) {
-        return static_cast<std::size_t>(y) * static_cast<std::size_t>(of.x) + static_cast<std::size_t>(x);
-    };
-    Picture small{size, std::vector<glm::vec3>(index(size, 0, size.y))};
-    for (int y = 0; y < size.y * factor; ++y) {
-        for (int x = 0; x < size.x * factor; ++x) {
-            small.pixels[index(size, x / factor, y / factor)] +=
-                share * picture.pixels[index(picture.size, x, y)];
-        }
-    }
-    return small;
-}
-
 void write_png(const fs::path& path, glm::ivec2 size, std::span<const std::uint8_t> rgb) {
     require_size(path, size, rgb.size() / 3);
     std::vector<char> png;

@@ -77,6 +77,22 @@ double relative_mse(const Picture& picture, const Picture& reference, std::span<
     });
 }
 
+Blocks blocks_of(const Picture& picture, std::span<const std::uint8_t> hit, int side) {
+    const glm::ivec2 size = picture.size / side;
+    Blocks blocks{{size, {}}, {}};
+    for (int block = 0; block < size.x * size.y; ++block) {
+        const glm::ivec2 first = side * glm::ivec2(block % size.x, block / size.x);
+        glm::dvec4 sum(0.0);  // alpha: pixels that count
+        for (int i = 0; i < side * side; ++i) {
+            const std::size_t pixel = index_of(first + glm::ivec2(i % side, i / side), picture.size);
+            if (counts(hit, pixel)) sum += glm::dvec4(picture.pixels[pixel], 1.0);
+        }
+        blocks.means.pixels.emplace_back(glm::dvec3(sum) / std::max(sum.a, 1.0));
+        blocks.hit.push_back(2.0 * sum.a < side * side ? 0 : 1);
+    }
+    return blocks;
+}
+
 void require_comparable(const Picture& picture, const Picture& reference, std::span<const std::uint8_t> hit) {
     if (picture.size != reference.size || picture.pixels.size() != reference.pixels.size()) {
         throw ToolError(fmt::format("a picture of {}x{} cannot be compared with one of {}x{}", picture.size.x,

@@ -11,25 +11,13 @@ namespace {
 /// delay the window.
 constexpr int most_pixels_across = 320;
 
-/// Where most of a block of pixels counts.
-tools::Mask scaled_down(const tools::Mask& hit, glm::ivec2 size, int factor) {
-    tools::Picture shares{size, {}};
-    for (const std::uint8_t counts : hit) shares.pixels.emplace_back(counts != 0 ? 1.0F : 0.0F);
-    tools::Mask mask;
-    for (const glm::vec3& share : tools::scaled_down(shares, factor).pixels) {
-        mask.push_back(share.r > 0.5F ? 1 : 0);
-    }
-    return mask;
-}
-
 ReferenceErrors compared(const tools::Picture& shown, const tools::ReferencePicture& reference) {
-    const int factor = (shown.size.x + most_pixels_across - 1) / most_pixels_across;
-    const tools::Picture small = tools::scaled_down(shown, factor);
-    const tools::Picture small_reference = tools::scaled_down(reference.radiance, factor);
-    const tools::Mask hit = scaled_down(reference.hit, shown.size, factor);
+    const int side = (shown.size.x + most_pixels_across - 1) / most_pixels_across;
+    const tools::Picture small = tools::blocks_of(shown, reference.hit, side).means;
+    const tools::Blocks right = tools::blocks_of(reference.radiance, reference.hit, side);
     return {.rel_mse = tools::relative_mse(shown, reference.radiance, reference.hit),
-            .blotch = tools::blotch(small, small_reference, hit),
-            .flip = tools::flip_of_light(small, small_reference, hit).mean};
+            .blotch = tools::blotch(small, right.means, right.hit),
+            .flip = tools::flip_of_light(small, right.means, right.hit).mean};
 }
 
 }  // namespace

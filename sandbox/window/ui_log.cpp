@@ -71,7 +71,6 @@ Json lasting(const SessionState& state, const UiFrame& frame) {
               {"errors", Json::array({app.errors.begin(), app.errors.end()})},
               {"refined", report != nullptr ? report->refined : 0},
               {"rel_mse", app.error ? Json(app.error->rel_mse) : Json()},
-              {"flip", app.error ? Json(app.error->flip) : Json()},
               {"controls", std::move(controls)}};
     if (state.document) json.update(to_json(*state.document));
     return json;

@@ -102,9 +102,9 @@ float most(vec4 v) { return max(max(v.x, v.y), max(v.z, v.w)); }
 // How much farther than its centre a texel may reach, relative to its distance: its diagonal.
 float reach_of_texel(MapFrame frame) { return 2.8284271 * frame.width / float(vpl_constants.map_resolution); }
 
-// How far behind each plane a surface may be that it does not hide, relative to the distance: a texel, where texels see
-// different planes, of those that face within 60 degrees of the surface. Curved surfaces, and things that are smaller than
-// texels, would else hide themselves.
+// How far a surface may be behind the plane of each texel and still be seen, relative to its distance. Curved surfaces, and
+// things that are smaller than texels, would hide themselves: where the texels see different planes, it is a texel for those
+// that face within 60 degrees of the surface. Rounded slopes make one plane differ by up to 0.002.
 vec4 hiding_slack(SeenPlanes seen, vec4 planes, vec3 facing, float reach) {
     if (least(planes) > 0.998 * most(planes)) return vec4(0.0);
     // (along_x, along_y, along_z) is the plane's normal, times a factor, on the side that the VPL does not see.
@@ -145,10 +145,9 @@ float visibility_of_vpl(uint map, VplPose pose, Surface surface) {
     SeenPlanes seen = planes_around(map, frame, place);
     float own_depth = vpl_constants.map_near * inverse_length;
     float reach = reach_of_texel(frame);
-    vec4 own = depths_of_plane(seen, at, facing);
     vec4 planes = depths_at(seen, point);
     vec4 slack = hiding_slack(seen, planes, facing, reach);
-    vec4 before = vec4(greaterThan(seen.depth, own));
+    vec4 before = vec4(greaterThan(seen.depth, depths_of_plane(seen, at, facing)));
     vec4 hides = before * vec4(greaterThan(planes, own_depth * (1.0 + slack)));
     if (most(hides) > least(hides)) hides = with_unseeing(hides, seen, planes, own_depth, reach);
     return dot(seen.weight, 1.0 - hides);

@@ -60,6 +60,15 @@ TEST_CASE("the shipped scene is found, and has a camera and a light") {
     CHECK(scene.world.count<PointLight>() == 1);
 }
 
+TEST_CASE("a file of the name of a shipped one elsewhere is not shipped") {
+    const TemporaryFolder folder;
+    const std::filesystem::path shipped = shipped_file("scenes", "cornell.gltf");
+    std::filesystem::copy(shipped, folder / "cornell.gltf");
+    CHECK(is_shipped("scenes", shipped));
+    CHECK_FALSE(is_shipped("scenes", folder / "cornell.gltf"));
+    CHECK_FALSE(is_shipped("scenes", folder / "none.gltf"));
+}
+
 TEST_CASE("a saved scene opens as it was, without what the app has added for itself") {
     const TemporaryFolder folder;
     Scene scene = load_scene(shipped_file("scenes", "glass.gltf"));

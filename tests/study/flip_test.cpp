@@ -169,6 +169,7 @@ TEST_CASE("pixels outside the mask are excluded from the mean") {
     CHECK(one.mean == all.map[0]);
     CHECK_THROWS_AS((void)flip(picture, noise({3, 3}, 1)), tools::ToolError);
 }
+
 TEST_CASE("light is compared as it is shown, with the exposure of the reference") {
     // All light times 2^k: another exposure, and the same difference.
     const Picture reference = noise(shape, 1), other = noise(shape, 2);
@@ -183,7 +184,7 @@ TEST_CASE("light is compared as it is shown, with the exposure of the reference"
     // A picture that is darker as a whole differs, as it is not exposed for itself.
     CHECK(tools::flip_of_light(scaled(reference, 0.25F), reference).mean > 0.1);
     CHECK(tools::flip_of_light(reference, reference).mean == 0.0);
-    // A uniform picture is shown as 18 % grey, and one of four stops more as the curve has it.
+    // A uniform picture is shown as the curve shows 18 % grey.
     const double grey_18 = (0.18 * (2.51 * 0.18 + 0.03)) / (0.18 * (2.43 * 0.18 + 0.59) + 0.14);
     const Picture shown = tools::displayed(grey(0.5F), tools::automatic_exposure(grey(0.5F)));
     CHECK(shown.pixels[3].g == doctest::Approx(grey_18).epsilon(1e-3));

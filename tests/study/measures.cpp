@@ -126,22 +126,13 @@ double flicker(std::span<const Picture> frames, std::span<const Picture> referen
 std::optional<double> rel_mse_of_blocks(const Picture& picture, const Picture& reference, const Mask& hit) {
     require_comparable(picture, reference, {});
     constexpr int side = 6;
-    const auto of_hits = [&](Picture of, auto value) {
-        for (std::size_t i = 0; i < hit.size(); ++i)
-            of.pixels[i] = hit[i] != 0 ? value(of.pixels[i]) : glm::vec3(0.0F);
-        return tools::scaled_down(of, side);
-    };
-    const Picture shares = of_hits(picture, [](const glm::vec3&) { return glm::vec3(1.0F); });
-    Mask blocks(shares.pixels.size());
-    std::ranges::transform(shares.pixels, blocks.begin(),
-                           [](const glm::vec3& share) -> std::uint8_t { return share.r < 0.5F ? 0 : 1; });
-    if (std::ranges::count(blocks, 1) == 0) return std::nullopt;
-    const auto means = [&](const Picture& of) {
-        Picture sums = of_hits(of, [](const glm::vec3& pixel) { return pixel; });
-        for (std::size_t i = 0; i < blocks.size(); ++i) sums.pixels[i] /= glm::max(shares.pixels[i], 1e-6F);
-        return sums;
-    };
-    return tools::relative_mse(means(picture), means(reference), blocks);
+    const tools::Blocks blocks = tools::blocks_of(picture, hit, side);
+    if (std::ranges::count(blocks.hit, 1) == 0) return std::nullopt;
+    return tools::relative_mse(blocks.means, tools::blocks_of(reference, hit, side).means, blocks.hit);
+}
+
+Picture scaled_down(const Picture& picture, int factor) {
+    return tools::blocks_of(picture, {}, factor).means;
 }
 
 }  // namespace candela::study

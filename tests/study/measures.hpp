@@ -5,7 +5,6 @@
 #include <span>
 #include <vector>
 
-#include <candela/tools/picture.hpp>
 #include <candela/tools/picture_error.hpp>
 
 namespace candela::study {
@@ -14,7 +13,6 @@ using tools::counts;
 using tools::first_not_finite;
 using tools::Mask;
 using tools::require_comparable;
-using tools::scaled_down;
 
 /// The difference between a picture of linear radiance and its reference, over the pixels that count. a and r
 /// are the RGB vectors of a pixel in the picture and in the reference.
@@ -56,5 +54,9 @@ struct Errors {
 /// hardly adds to it. `hit` has one element for each pixel. Throws as `measure` does.
 [[nodiscard]] std::optional<double> rel_mse_of_blocks(const tools::Picture& picture,
                                                       const tools::Picture& reference, const Mask& hit);
+
+/// The means of blocks of `factor` x `factor` pixels; incomplete blocks at the right and at the bottom are
+/// dropped.
+[[nodiscard]] tools::Picture scaled_down(const tools::Picture& picture, int factor);
 
 }  // namespace candela::study

@@ -18,17 +18,16 @@ std::uint32_t number_of(std::optional<ToneCurve> curve) {
 }
 
 /// The step between two colours that the bound framebuffer's first draw buffer tells apart; 0 if it has more
-/// than 10 bits, as all floats have.
+/// than 10 bits, as all floats have. Windows have 8 bits.
 float colour_step(const gl::Functions& gl) {
-    const GLenum buffer = gl::get_unsigned(gl, GL_DRAW_BUFFER0);
-    if (buffer == GL_NONE) return 0.0F;
-    // The default framebuffer has attachments of other names.
-    const GLenum attachment =
-        buffer == GL_BACK ? GL_BACK_LEFT : (buffer == GL_FRONT ? GL_FRONT_LEFT : buffer);
-    GLint bits = 0;
-    gl.GetFramebufferAttachmentParameteriv(GL_DRAW_FRAMEBUFFER, attachment,
-                                           GL_FRAMEBUFFER_ATTACHMENT_RED_SIZE, &bits);
     constexpr GLint most_bits = 10;
+    GLint bits = 8;
+    const GLenum buffer = gl::get_unsigned(gl, GL_DRAW_BUFFER0);
+    // The buffers of a window have lower numbers.
+    if (buffer >= GL_COLOR_ATTACHMENT0) {
+        gl.GetFramebufferAttachmentParameteriv(GL_DRAW_FRAMEBUFFER, buffer,
+                                               GL_FRAMEBUFFER_ATTACHMENT_RED_SIZE, &bits);
+    }
     return bits > most_bits ? 0.0F : 1.0F / (std::exp2(static_cast<float>(bits)) - 1.0F);
 }
 

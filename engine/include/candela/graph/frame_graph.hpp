@@ -68,7 +68,7 @@ class Arena {
         void (*destroy)(void*);
     };
 
-    /// For one more, so that an object that has been made is not lost.
+    /// Makes room for the record of an object before the object is made, which would be lost if that failed.
     void make_room() {
         if (owned_.size() == owned_.capacity()) owned_.reserve(2 * owned_.size() + 16);
     }

@@ -29,7 +29,7 @@ struct Flip {
 
 /// The factor that ToneMapSettings::automatic_exposure gives a picture of radiance: 0.18 / its log-average
 /// luminance (Reinhard et al., "Photographic Tone Reproduction for Digital Images", 2002, equations 1 and 2),
-/// within 2^-10 to 2^10; 1 if all is black.
+/// within 2^-10 to 2^10. Pixels count as they do there; 1 if none does.
 [[nodiscard]] CANDELA_API double automatic_exposure(const Picture& radiance);
 
 /// Linear RGB of the screen, from 0 to 1, for radiance times `exposure`, by ToneCurve::filmic.

@@ -22,10 +22,6 @@ struct Picture {
 /// The same upside down: from the rows of OpenGL, which begin at the bottom, or to them.
 [[nodiscard]] CANDELA_API Picture flipped(Picture picture);
 
-/// The means of blocks of `factor` × `factor` pixels, at least 1; incomplete blocks at the right and at the
-/// bottom are dropped.
-[[nodiscard]] CANDELA_API Picture scaled_down(const Picture& picture, int factor);
-
 /// Texels of a tone-mapped texture, the bottom row first, channels from 0 to 1, as write_png takes them.
 [[nodiscard]] CANDELA_API std::vector<std::uint8_t> rgb_of_texels(glm::uvec2 size,
                                                                   std::span<const glm::vec4> texels);

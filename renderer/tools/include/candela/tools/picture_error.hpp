@@ -37,6 +37,15 @@ using Mask = std::vector<std::uint8_t>;
 [[nodiscard]] CANDELA_API double blotch(const Picture& picture, const Picture& reference,
                                         std::span<const std::uint8_t> hit = {});
 
+/// A picture of fewer pixels, for measures of what is larger than a pixel.
+struct Blocks {
+    Picture means;  ///< over the pixels of each block that count; 0 if none does
+    Mask hit;       ///< the blocks of which half of the pixels count, or more
+};
+/// Blocks of `side` × `side` pixels, at least 1; incomplete ones at the right and at the bottom are dropped.
+[[nodiscard]] CANDELA_API Blocks blocks_of(const Picture& picture, std::span<const std::uint8_t> hit,
+                                           int side);
+
 /// Throws ToolError as `relative_mse` does; for other measures.
 CANDELA_API void require_comparable(const Picture& picture, const Picture& reference,
                                     std::span<const std::uint8_t> hit);
