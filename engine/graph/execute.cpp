@@ -46,6 +46,9 @@ const FrameRecord& GraphRuntime::run(const World& world, Timing timing, const st
     // Set when a pass that might have changed its results did not: its readers may be marked without need.
     bool marked_too_many = false;
 
+    const bool may_hold = std::ranges::all_of(
+        state_->steps, [](const detail::Step& step) { return step.held_by == none || step.has_run; });
+
     record_.frame = frame_;
     for (PassRecord& record : record_.passes) {
         record.ran = record.verified = false;
@@ -57,8 +60,13 @@ const FrameRecord& GraphRuntime::run(const World& world, Timing timing, const st
     if (wanted) execution.wanted_ = &wanted;
     Clock::time_point last = timing == Timing::on ? Clock::now() : Clock::time_point{};
     for (std::uint32_t position = 0; position < state_->step_count(); ++position) {
-        const detail::Step& step = state_->steps[position];
+        detail::Step& step = state_->steps[position];
         pending_barriers_ = pending_barriers_ | step.barrier;
+        step.is_held = may_hold && is_held(step);
+        if (step.is_held) {
+            marked_too_many = true;
+            continue;
+        }
         if (state_->need[position] == nothing) continue;
         const bool changed = dirty(step, world);
         if (!changed && marked_too_many) {
@@ -100,6 +108,12 @@ void GraphRuntime::require_imports() const {
             resource.storage->kind == ResourceKind::value ? "has not been set" : "has not been bound";
         throw GraphError(fmt::format("imported {} {}", resource.title(), lack));
     }
+}
+
+bool GraphRuntime::is_held(const detail::Step& step) const {
+    if (step.held_by == none) return false;
+    const void* const held = state_->slots[step.held_by].value.content.get();
+    return held != nullptr && *static_cast<const bool*>(held);
 }
 
 bool GraphRuntime::dirty(const detail::Step& step, const World& world) const {

@@ -174,6 +174,15 @@ void FrameGraph::append_to_keys(std::optional<std::string_view> ending) {
     declared_->key_ending = ending;
 }
 
+void FrameGraph::hold_passes(std::optional<ValueHandle<bool>> held) {
+    if (held && !declared_->owns(*held, ResourceKind::value)) {
+        declared_->error(ErrorCode::foreign_handle, "passes are held by a value {}",
+                         declared_->fault_of(*held));
+        return;
+    }
+    declared_->held_by = held ? held->resource : detail::none;
+}
+
 TextureHandle FrameGraph::texture(std::string_view name, const TextureDesc& desc, Lifetime lifetime) {
     return {add_resource(*declared_, declared_->store_name(name),
                          {.kind = ResourceKind::texture, .texture = desc}, lifetime)};

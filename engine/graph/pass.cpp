@@ -142,6 +142,7 @@ Pass::Pass(Declaration& declared, std::string_view name) : declared_(declared), 
     const detail::Name stored = declared.store_name(name);
     pass.name = stored.name;
     pass.key = stored.key;
+    pass.held_by = declared.held_by;
     pass.first_access = detail::size_of(declared.accesses);
     pass.first_component = detail::size_of(declared.components);
     pass.first_parameter = detail::size_of(declared.parameters);

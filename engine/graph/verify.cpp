@@ -30,7 +30,8 @@ std::vector<std::uint8_t> repeatable_steps(const detail::State& state) {
 
     for (std::uint32_t position = 0; position < again.size(); ++position) {
         const detail::Step& step = state.steps[position];
-        if (!step.has_run || step.side_effect || step.writes_import || step.keeps_state) exclude(position);
+        if (!step.has_run || step.is_held || step.side_effect || step.writes_import || step.keeps_state)
+            exclude(position);
     }
     for (bool excluded = true; excluded;) {
         excluded = false;

@@ -7,6 +7,7 @@
 #include "renderer/frame/build_view.hpp"
 #include "renderer/passes/indirect/vpl_gather.hpp"
 #include "renderer/passes/sky/sky_vpls.hpp"
+#include "renderer/passes/surfels/surfel_guide.hpp"
 #include "renderer/passes/surfels/surfel_light.hpp"
 #include "renderer/passes/surfels/surfel_visibility.hpp"
 #include "renderer/passes/vpls/vpl_maps.hpp"
@@ -85,6 +86,7 @@ struct WantedVpls {
     ShownLight shown;
     bool emitters = false;    ///< some surfaces emit light
     bool balanced = false;    ///< LitSurfels::balanced
+    bool guided = false;      ///< surfels are placed by what lights the picture
     std::uint32_t count = 0;  ///< about how many there will be
 
     [[nodiscard]] bool any() const { return shown.emitted || shown.reflected; }
@@ -107,6 +109,7 @@ WantedVpls wanted_vpls(const Configuration& configuration, const FrameShape& sha
     if (!configuration.indirect) wanted.settings.bounces = 0;
     wanted.balanced = contents.shares_items && wanted.settings.placement == VplPlacement::surfels &&
                       configuration.visibility.method != VplVisibility::none;
+    wanted.guided = wanted.settings.guided && !contents.shares_items && wanted.settings.bounces > 0;
     wanted.count = configuration.indirect ? wanted.settings.count : 0;
     wanted.count += contents.emitters ? emitting_surfels(wanted.settings.count) : 0;
     wanted.count += contents.sky ? sky_patches(wanted.settings.count) : 0;
@@ -120,23 +123,53 @@ struct SurfelInputs {
     SurfelFoci foci;
     SurfelSources sources;
     std::optional<ValueHandle<UpdateClock>> update_clock;  ///< none: all is traced at once
+    std::optional<ValueHandle<SurfelGuide>> guide{};       ///< none: surfels are placed by area alone
 };
+
+/// What guides where surfels are placed: the light of a coarse set, which is placed by area and has no depth
+/// maps.
+ValueHandle<SurfelGuide> add_guide(FrameGraph& graph, Gpu& gpu, const WantedVpls& wanted, const LitScene& lit,
+                                   const SurfelInputs& inputs,
+                                   ValueHandle<std::vector<ViewRequest>> requests) {
+    graph.append_to_names(" (guide)");
+    graph.hold_passes(inputs.foci.holds_guide);
+    VplSettings settings = wanted.settings;
+    settings.count = guiding_surfels(settings.count);
+    settings.seed = 0;  // all sets have the same guide
+    const ValueHandle<SpreadSurfels> spread =
+        add_surfel_spread(graph, lit.scene, {}, {.foci = inputs.foci.foci}, settings);
+    const Surfels surfels = add_surfels(graph, gpu, lit.scene, lit.tracing, inputs.motion, spread,
+                                        inputs.foci.of_maps, settings.count);
+    const SurfelVisibility visibility =
+        add_surfel_visibility(graph, gpu, lit.tracing, surfels, inputs.motion);
+    SurfelSources sources{.lights = lit.lights, .emitters = wanted.emitters, .sky = {}};
+    if (lit.sky) sources.sky = add_sky_patches(graph, gpu, *lit.sky, std::nullopt);
+    const Vpls light = add_surfel_light(graph, gpu, lit.tracing, visibility, sources, settings.bounces, {});
+    const auto guide =
+        add_surfel_guide(graph, gpu, lit.scene, lit.tracing, requests, spread, visibility, light);
+    graph.hold_passes(std::nullopt);
+    graph.append_to_names("");
+    return guide;
+}
 
 SurfelInputs add_surfel_inputs(FrameGraph& graph, Gpu& gpu, const WantedVpls& wanted, const LitScene& lit,
                                std::optional<ValueHandle<Refinement>> refinement, FrameHandles& frame) {
     frame.epoch = graph.import_value<std::uint64_t>("scene epoch");
     frame.requests = graph.import_value<std::vector<ViewRequest>>("view requests");
     if (wanted.settings.updates > 0) frame.update_clock = graph.import_value<UpdateClock>("update clock");
-    SurfelInputs inputs{.motion = add_scene_motion(graph, lit.scene, *frame.epoch),
-                        .foci = add_surfel_focus(graph, lit.scene, lit.tracing, *frame.requests,
-                                                 wanted.settings.count, frame.update_clock),
-                        .sources = {.lights = lit.lights,
-                                    .emitters = wanted.emitters,
-                                    .sky = {},
-                                    .balanced = wanted.balanced},
-                        .update_clock = frame.update_clock};
+    SurfelInputs inputs{
+        .motion = add_scene_motion(graph, lit.scene, *frame.epoch),
+        .foci = add_surfel_focus(
+            graph, lit.scene, lit.tracing, *frame.requests, wanted.settings.count,
+            {frame.update_clock, wanted.guided ? std::optional(lit.lights.table) : std::nullopt}),
+        .sources = {.lights = lit.lights,
+                    .emitters = wanted.emitters,
+                    .sky = {},
+                    .balanced = wanted.balanced},
+        .update_clock = frame.update_clock};
     frame.focus_state = inputs.foci.state;
     if (lit.sky) inputs.sources.sky = add_sky_patches(graph, gpu, *lit.sky, refinement);
+    if (wanted.guided) inputs.guide = add_guide(graph, gpu, wanted, lit, inputs, *frame.requests);
     return inputs;
 }
 
@@ -161,7 +194,7 @@ TracedSet add_traced_set(FrameGraph& graph, Gpu& gpu, const WantedVpls& wanted, 
                          const SurfelSetChoice& set, const SurfelInputs& inputs) {
     begin_place(graph, set.place);
     const ValueHandle<SpreadSurfels> spread =
-        add_surfel_spread(graph, lit.scene, set, inputs.foci.foci, wanted.settings);
+        add_surfel_spread(graph, lit.scene, set, {inputs.foci.foci, inputs.guide}, wanted.settings);
     const Surfels surfels = add_surfels(graph, gpu, lit.scene, lit.tracing, inputs.motion, spread,
                                         inputs.foci.of_maps, wanted.settings.count);
     std::optional<SurfelUpdates> updates;

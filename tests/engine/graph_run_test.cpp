@@ -460,6 +460,54 @@ TEST_CASE_FIXTURE(GraphFixture, "graph run: a pass that only reads depth does no
     CHECK_FALSE(backend.targets.writes_depth);
 }
 
+TEST_CASE_FIXTURE(GraphFixture,
+                  "graph run: held passes keep what they have written, and run once they are not held") {
+    const auto power = graph.import_value<int>("power");
+    const auto held = graph.import_value<bool>("held");
+    graph.hold_passes(held);
+    const auto doubled = graph.add("double", [&](Pass& pass) {
+        pass.read(power);
+        const auto written = pass.write(graph.value<int>("doubled"));
+        pass.run([=](Execution& run) { run.set(written, 2 * run.value(power)); });
+        return written;
+    });
+    const auto negated = graph.add("negate", [&](Pass& pass) {
+        pass.read(doubled);
+        const auto written = pass.write(graph.value<int>("negated"));
+        pass.run([=](Execution& run) { run.set(written, -run.value(doubled)); });
+        return written;
+    });
+    graph.hold_passes(std::nullopt);
+    int shown = 0;
+    graph.add("show", [&](Pass& pass) {
+        pass.side_effect();
+        pass.read(held);
+        pass.read(power);
+        pass.read(negated);
+        pass.run([=, &shown](Execution& run) { shown = run.value(negated); });
+    });
+    switch_to();
+    runtime.set(power, 1);
+    runtime.set(held, true);
+    CHECK(run() == "double negate show");  // what has never run cannot stay
+    runtime.set(power, 2);
+    CHECK(run() == "show");
+    CHECK(shown == -2);
+    runtime.set(held, false);
+    CHECK(run() == "double negate show");
+    CHECK(shown == -4);
+    runtime.set(held, true);
+    CHECK(run() == "show");
+    runtime.set(held, false);
+    CHECK(run() == "show");  // nothing has changed meanwhile
+
+    SUBCASE("after an invalidation all of them run") {
+        runtime.set(held, true);
+        runtime.invalidate();
+        CHECK(run() == "double negate show");
+    }
+}
+
 TEST_CASE_FIXTURE(GraphFixture, "graph run: CPU time is measured only if requested") {
     graph.add("work", [&](Pass& pass) {
         pass.side_effect();

@@ -108,8 +108,9 @@ TEST_CASE("a setting that depends on others says when it has an effect") {
     c.visibility.method = VplVisibility::rays;
     c.path = ShadingPath::clustered_forward;
     c.shadows.enabled = false;
-    CHECK(without_effect(c) == Paths{"vpls.updates", "vpls.map_resolution", "shadows.cube_resolution",
-                                     "shadows.map_resolution", "shadows.budget_mib"});
+    CHECK(without_effect(c) == Paths{"vpls.updates", "vpls.guided", "vpls.map_resolution",
+                                     "shadows.cube_resolution", "shadows.map_resolution",
+                                     "shadows.budget_mib"});
 }
 
 TEST_CASE("a member of an object is unknown outside of it, and objects are nested no deeper") {

@@ -307,6 +307,7 @@ Configuration linear_configuration(ShadingPath path) {
     configuration.tone_map.enabled = false;
     configuration.interleave = Interleave::one;
     configuration.vpls.count = 32;
+    configuration.vpls.guided = false;
     configuration.visibility = {.method = VplVisibility::none, .map_resolution = 16};
     configuration.shadows.cube_resolution = configuration.shadows.map_resolution = 64;
     return configuration;

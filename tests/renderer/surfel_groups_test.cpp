@@ -76,7 +76,8 @@ class GroupTests : public RenderFixture {
         configuration.show = Show::indirect;
         configuration.interleave = Interleave::one;
         configuration.visibility.method = VplVisibility::none;
-        configuration.vpls = {.placement = VplPlacement::surfels, .count = count, .bounces = 1, .seed = 0};
+        configuration.vpls = {
+            .placement = VplPlacement::surfels, .count = count, .bounces = 1, .seed = 0, .guided = false};
         return configuration;
     }
 

@@ -156,6 +156,37 @@ TEST_CASE("surfels are dense in a focus, less so beyond it, and cover all of the
     CHECK((far / far_count) / (near / near_count) > 30.0);
 }
 
+TEST_CASE("surfels are dense where a guide says that light comes from, and the rest has a part by area") {
+    SceneTriangles plane{.triangles = {}, .item_of = {}, .double_sided = {false}, .emits = {false}};
+    add_parallelogram(plane, 0, {-1, -1, 0}, {2, 0, 0}, {0, 2, 0});
+    // 64 x 64 points, of which those with x < 0 have all shares. Triangle 0 has the corner at -1, -1.
+    std::vector<GuidePoint> guide;
+    constexpr int side = 64;
+    for (int i = 0; i < side * side; ++i) {
+        const glm::vec2 at = (glm::vec2(i % side, i / side) + 0.5F) / static_cast<float>(side);
+        const bool first = at.x + at.y < 1.0F;
+        guide.push_back({.place = {.triangle = first ? 0U : 1U, .weights = first ? at : 1.0F - at},
+                         .area = 4.0F / (side * side),
+                         .share = at.x < 0.5F ? 3.0F : 0.0F});
+    }
+    const SurfelSet set = SurfelPlacement(plane, test_seed()).place({.reflecting = 480}, {}, guide);
+    const auto left = std::ranges::count_if(
+        set.surfels, [](const gpu::Surfel& surfel) { return surfel.position.x < 0.0F; });
+    // Light counts 1 and area 0.2, of which the right half has half: 0.1 of 1.2. The worth of cells, of which
+    // the most is cut, varies by a factor of 4, more than its mean does.
+    const double share_right = 1.0 - static_cast<double>(left) / static_cast<double>(set.surfels.size());
+    CHECK(share_right > 0.5 / 12.0);
+    CHECK(share_right < 2.0 / 12.0);
+    CHECK(total_area(set) == doctest::Approx(4.0).epsilon(1e-4));
+}
+
+TEST_CASE("a guide without light changes nothing") {
+    const std::vector<GuidePoint> dark{{.place = {.triangle = 0}, .area = 1.0F, .share = 0.0F}};
+    const SurfelSet plain = placed(cube(), {.reflecting = 100}, test_seed());
+    const SurfelSet guided = SurfelPlacement(cube(), test_seed()).place({.reflecting = 100}, {}, dark);
+    CHECK(plain.ids == guided.ids);
+}
+
 TEST_CASE("most surfels stay where a focus moves a little, and where it was before does not matter") {
     SceneTriangles plane{.triangles = {}, .item_of = {}, .double_sided = {false}, .emits = {false}};
     add_parallelogram(plane, 0, {-500, -500, 0}, {1000, 0, 0}, {0, 1000, 0});

@@ -24,7 +24,8 @@ class SurfelUpdates : public RenderFixture {
             if (name.value == "tall block") block_ = entity;
         }
         configuration_.show = Show::indirect;
-        configuration_.vpls = {.placement = VplPlacement::surfels, .count = 32, .updates = 5};
+        configuration_.vpls = {
+            .placement = VplPlacement::surfels, .count = 32, .updates = 5, .guided = false};
         configuration_.visibility = {.method = VplVisibility::maps, .map_resolution = 16};
         configuration_.shadows.cube_resolution = 32;
     }

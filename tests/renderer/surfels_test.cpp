@@ -27,8 +27,11 @@ class SurfelTests : public RenderFixture {
     static Configuration surfels(std::uint32_t count, std::uint32_t bounces = 8) {
         Configuration configuration = linear_configuration();
         configuration.show = Show::indirect;
-        configuration.vpls = {
-            .placement = VplPlacement::surfels, .count = count, .bounces = bounces, .seed = 0};
+        configuration.vpls = {.placement = VplPlacement::surfels,
+                              .count = count,
+                              .bounces = bounces,
+                              .seed = 0,
+                              .guided = false};
         return configuration;
     }
 };

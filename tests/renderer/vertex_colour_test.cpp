@@ -100,7 +100,7 @@ TEST_CASE_FIXTURE(PathFixture, "alpha of vertices makes holes in masks, for the 
     }
     add(covered.world, at({0.0F, 0.5F, 0.0F}), MeshInstance{std::make_shared<const Mesh>(std::move(mesh))});
     Configuration configuration = linear_configuration();
-    configuration.vpls = {.placement = VplPlacement::surfels, .count = 64, .bounces = 1};
+    configuration.vpls = {.placement = VplPlacement::surfels, .count = 64, .bounces = 1, .guided = false};
     configuration.show = Show::direct;
     configure(configuration);
     const Picture expected = render(scene, size);

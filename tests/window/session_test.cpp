@@ -229,7 +229,7 @@ TEST_CASE("resources are seen instead of the picture, and presets, views and com
                          R"({"refinement": {"enabled": false}, "tone_map": {"exposure_ev": -2}})");
     App app({.flags = {"--config", still.path(), "--vpls", "16", "--path", "tiled-deferred"},
              .width = 720,
-             .height = 640,  // the graph panel lists all passes
+             .height = 800,  // the graph panel lists all passes
              .panel = true});
     static_cast<void>(app.settled());
     inspect(app);

@@ -103,7 +103,8 @@ struct PassNode {
     std::uint32_t first_parameter = 0;
     bool side_effect = false;
     bool keeps_state = false;
-    std::uint32_t tag = 0;  // see Pass::tag
+    std::uint32_t held_by = none;  // resource: FrameGraph::hold_passes
+    std::uint32_t tag = 0;         // see Pass::tag
 };
 
 /// The content of a FrameGraph in flat arrays. Names, functions and parameters are stored in the arena.
@@ -138,6 +139,7 @@ struct Declaration {
     Arena arena;
     std::string ending;                     // of the names of what is declared
     std::optional<std::string> key_ending;  // of their keys; none: they are the names
+    std::uint32_t held_by = none;           // PassNode::held_by of what is declared
     bool declaring = false;                 // a pass
     std::vector<PassNode> passes;
     std::vector<Access> accesses;

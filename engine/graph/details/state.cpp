@@ -15,7 +15,8 @@ Step make_step(const Declaration& declared, const Plan& plan, std::uint32_t posi
               .key = node.key,
               .barrier = plan.barrier[position],
               .side_effect = node.side_effect,
-              .keeps_state = node.keeps_state};
+              .keeps_state = node.keeps_state,
+              .held_by = node.held_by == none ? none : plan.object[node.held_by]};
     for (const ComponentRead& read : declared.components_of(pass)) {
         step.revisions.push_back({read.revision});
     }

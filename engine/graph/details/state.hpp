@@ -89,6 +89,8 @@ struct Step {
     bool side_effect = false;
     bool writes_import = false;
     bool keeps_state = false;
+    std::uint32_t held_by = none;  // slot of the value that holds the pass: FrameGraph::hold_passes
+    bool is_held = false;          // in this frame
     bool has_run = false;
 };
 

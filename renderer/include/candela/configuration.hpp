@@ -64,6 +64,11 @@ struct VplSettings {
     /// where it matters most, and Renderer::settled tells when all has. Likewise in the first frames:
     /// surfels that were not traced yet send no light.
     std::uint32_t updates = 0;
+    /// Surfels are many where most of the light comes from that the views see, so that there are others when
+    /// a view or a light moves. Off: by area and distance alone, for pictures in tiles that must fit
+    /// together, or for a host that shows nothing of its own views. No effect where some surfels stand for
+    /// several objects.
+    bool guided = true;
     bool operator==(const VplSettings&) const = default;
 };
 

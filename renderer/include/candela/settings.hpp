@@ -69,6 +69,9 @@ void for_each_setting(Config& c, const Visitor& visit) {
         "in "
         "which much moves does not take longer; 0: all at once",
         c.indirect && c.vpls.placement == VplPlacement::surfels);
+    row("vpls.guided", "--vpl-guided", c.vpls.guided, {},
+        "more surfels where the light comes from that is seen; others then when a view or a light moves",
+        c.indirect && c.vpls.placement == VplPlacement::surfels);
     row("vpls.interleave", "--interleave", c.interleave, {},
         "with n, a pixel evaluates one in n² VPLs; the rest of their light comes from neighbours on the "
         "same surface",

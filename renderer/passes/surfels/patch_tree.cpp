@@ -132,10 +132,10 @@ void cut_fragment(const Fragment& fragment, const std::array<float, 3>& distance
 
 /// Fragments that are much smaller than the patch are not cut: they go to one side as a whole.
 void divide_by_position(const gpu::TraceTriangle& triangle, const Fragment& fragment, const Patch& patch,
-                        float at, Halves& halves) {
+                        Halves& halves) {
     std::array<float, 3> distances{};
     for (std::size_t i = 0; i < 3; ++i) {
-        distances[i] = position_of(triangle, fragment.corners[i])[patch.axis] - at;
+        distances[i] = position_of(triangle, fragment.corners[i])[patch.axis] - patch.at;
     }
     const auto [least, most] = std::minmax({distances[0], distances[1], distances[2]});
     const bool is_small = (most - least) * (most - least) < 0.04F * patch.spread2;
@@ -147,15 +147,15 @@ void divide_by_position(const gpu::TraceTriangle& triangle, const Fragment& frag
 }
 
 Halves divide(std::span<const gpu::TraceTriangle> triangles, const std::vector<Fragment>& fragments,
-              const Patch& patch, float at) {
+              const Patch& patch) {
     Halves halves;
     for (const Fragment& fragment : fragments) {
         const gpu::TraceTriangle& triangle = triangles[fragment.triangle];
         if (patch.cuts_normals) {
             const float along = normal_of(triangle, fragment.back)[patch.axis];
-            halves[along < at ? 0 : 1].push_back(fragment);
+            halves[along < patch.at ? 0 : 1].push_back(fragment);
         } else {
-            divide_by_position(triangle, fragment, patch, at, halves);
+            divide_by_position(triangle, fragment, patch, halves);
         }
     }
     return halves;
@@ -207,13 +207,21 @@ std::optional<std::uint32_t> PatchTree::add_root(std::vector<Fragment> fragments
 
 bool PatchTree::cut(std::uint32_t patch) {
     if (patches_[patch].first != 0 || patches_[patch].is_whole) return !patches_[patch].is_whole;
-    patches_[patch].is_whole = !cut_at(patch, patches_[patch].at) && !cut_at(patch, patches_[patch].middle);
+    if (cut_at_its_place(patch)) return true;
+    patches_[patch].at = patches_[patch].middle;
+    patches_[patch].is_whole = !cut_at_its_place(patch);
     return !patches_[patch].is_whole;
 }
 
-bool PatchTree::cut_at(std::uint32_t patch, float at) {
+std::uint32_t PatchTree::half_at(std::uint32_t patch, const glm::vec3& place, const glm::vec3& normal) const {
+    const Patch& cut = patches_[patch];
+    const float along = (cut.cuts_normals ? normal : place)[cut.axis];
+    return along < cut.at ? 0 : 1;
+}
+
+bool PatchTree::cut_at_its_place(std::uint32_t patch) {
     const std::uint64_t id = patches_[patch].id;
-    Halves halves = divide(triangles_, fragments_[patch], patches_[patch], at);
+    Halves halves = divide(triangles_, fragments_[patch], patches_[patch]);
     if (halves[0].empty() || halves[1].empty()) return false;
     const auto first = add(std::move(halves[0]), combine_ids(id, use_half));
     if (!first) return false;

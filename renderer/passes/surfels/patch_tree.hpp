@@ -18,6 +18,7 @@ struct SurfacePoint {
     std::uint32_t triangle = 0;  ///< index
     glm::vec2 weights{0.0F};     ///< of its corners b and c
     bool back = false;           ///< on its back
+    bool operator==(const SurfacePoint&) const = default;
 };
 
 /// A part of a triangle, on one of its sides.
@@ -45,7 +46,7 @@ struct Patch {
     bool cuts_normals = false;  ///< by the direction that its surfaces face, otherwise by position
     int axis = 0;               ///< that it is cut across
     float at = 0.0F;            ///< coordinate of the cut
-    float middle = 0.0F;        ///< mean coordinate, for a cut if nothing is on one side of `at`
+    float middle = 0.0F;        ///< mean coordinate: becomes `at` if nothing is on one side of that
 };
 
 /// Random number of an id, evenly in [0, 1). Another `use` gives an independent one.
@@ -68,13 +69,17 @@ class PatchTree {
     /// Cuts a patch, unless it is cut already. Returns whether it could be.
     bool cut(std::uint32_t patch);
 
+    /// In which half of a patch that is cut a place is, 0 or 1. `normal`: unit.
+    [[nodiscard]] std::uint32_t half_at(std::uint32_t patch, const glm::vec3& place,
+                                        const glm::vec3& normal) const;
+
     /// The reference is valid until the next call of add_root or cut.
     [[nodiscard]] const Patch& operator[](std::uint32_t patch) const { return patches_[patch]; }
     [[nodiscard]] std::size_t size() const { return patches_.size(); }
 
  private:
     std::optional<std::uint32_t> add(std::vector<Fragment> fragments, std::uint64_t id);
-    bool cut_at(std::uint32_t patch, float at);
+    bool cut_at_its_place(std::uint32_t patch);
 
     std::span<const gpu::TraceTriangle> triangles_;
     std::vector<Patch> patches_;

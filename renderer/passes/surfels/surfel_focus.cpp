@@ -20,19 +20,8 @@ constexpr float least_spacings = 4.0F;
 constexpr int rays_a_side = 8;
 constexpr int ray_count = rays_a_side * rays_a_side;
 
-/// Rays from the eye through a grid of points in the picture.
-std::vector<Ray> rays_through(const CameraView& view) {
-    const glm::vec3 forward(-view.view_from_world[0][2], -view.view_from_world[1][2],
-                            -view.view_from_world[2][2]);
-    std::vector<Ray> rays;
-    for (int i = 0; i < ray_count; ++i) {
-        const glm::vec2 cell(i % rays_a_side, i / rays_a_side);
-        const glm::vec2 at = (2.0F * cell + 1.0F) / static_cast<float>(rays_a_side) - 1.0F;
-        const glm::vec4 near = view.world_from_clip * glm::vec4(at, 1.0F, 1.0F);
-        const glm::vec3 origin = glm::vec3(near) / near.w;
-        rays.push_back({origin, view.orthographic ? forward : glm::normalize(origin - view.eye)});
-    }
-    return rays;
+glm::vec3 forward_of(const CameraView& view) {
+    return {-view.view_from_world[0][2], -view.view_from_world[1][2], -view.view_from_world[2][2]};
 }
 
 /// Direction i of `ray_count` that are spread evenly, along a spiral on the sphere.
@@ -83,16 +72,15 @@ float median_distance(std::vector<SurfaceHit> hits) {
 
 /// How far the surfaces are that a view sees, and, indoors, those that light them.
 float view_distance(const CameraView& view, const TracedScene& scene, float ray_offset) {
-    const std::vector<SurfaceHit> seen = nearest_surfaces(scene, rays_through(view));
+    const std::vector<SurfaceHit> seen = nearest_surfaces(scene, rays_through(view, glm::ivec2(rays_a_side)));
     const std::vector<SurfaceHit> around = nearest_surfaces(scene, rays_around(view.eye));
     const std::vector<SurfaceHit> beyond = nearest_surfaces(scene, rays_onwards(seen, ray_offset));
     const float indoors = 2 * beyond.size() > seen.size() ? median_distance(beyond) : 0.0F;
     return std::max({median_distance(seen), median_distance(around), indoors});
 }
 
-std::optional<Focus> focus_of(const CameraView& view, const TracedScene& scene, const SceneMetrics& metrics,
-                              float spacing) {
-    const float distance = view_distance(view, scene, metrics.ray_offset());
+/// `distance`: view_distance.
+std::optional<Focus> focus_of(const CameraView& view, float distance, float spacing) {
     if (!(distance > 0.0F)) return std::nullopt;
     const float radius = 1.5F * std::exp2(std::round(8.0F * std::log2(distance)) / 8.0F);
     if (least_spacings * spacing <= radius) return std::nullopt;
@@ -101,27 +89,114 @@ std::optional<Focus> focus_of(const CameraView& view, const TracedScene& scene, 
 }
 
 /// None if evenly spread surfels are dense enough for a view.
-std::vector<Focus> foci_of(const std::vector<CameraView>& views, const TracedScene& scene,
-                           const SceneMetrics& metrics, std::uint32_t count) {
-    const float spacing = std::sqrt(metrics.area / static_cast<float>(std::max(count, 1U)));
+std::vector<Focus> foci_of(const std::vector<CameraView>& views, const std::vector<float>& distances,
+                           float area, std::uint32_t count) {
+    const float spacing = std::sqrt(area / static_cast<float>(std::max(count, 1U)));
     std::vector<Focus> foci;
-    for (const CameraView& view : views) {
-        const auto focus = focus_of(view, scene, metrics, spacing);
+    for (std::size_t i = 0; i < views.size(); ++i) {
+        const auto focus = focus_of(views[i], distances[i], spacing);
         if (!focus) return {};
         foci.push_back(*focus);
     }
     return foci;
 }
 
+/// Since when the guide stays.
+struct GuideAge {
+    std::vector<CameraView> views;  // that it is of
+    std::uint32_t moves = 0;        // frames in which something has moved since
+    bool held = false;
+    bool operator==(const GuideAge&) const = default;
+};
+
 /// The foci of the last frame, and what they were found for.
 struct FocusRecord {
     std::vector<Focus> foci;
     std::vector<CameraView> views;
     std::uint32_t count = 0;
+    GuideAge guide;
     bool operator==(const FocusRecord&) const = default;
 };
 
+/// Whether a view shows much that another does not. `distance`: of what it sees.
+bool differs_much(const CameraView& view, const CameraView& other, float distance) {
+    constexpr float cosine_of_little = 0.966F;  // of 15°
+    return glm::distance(view.eye, other.eye) > distance / 8.0F ||
+           glm::dot(forward_of(view), forward_of(other)) < cosine_of_little;
+}
+
+/// The age of the guide in this frame. `moves`: something does, a view or a light included.
+GuideAge guide_age(const GuideAge& last, const std::vector<CameraView>& views,
+                   const std::vector<float>& distances, bool moves, bool waits) {
+    constexpr std::uint32_t most_moves = 16;
+    GuideAge age{.views = last.views, .moves = last.moves + (moves ? 1U : 0U), .held = moves || waits};
+    if (last.views.size() != views.size() || age.moves > most_moves) age.held = false;
+    for (std::size_t i = 0; age.held && i < views.size(); ++i) {
+        age.held = !differs_much(views[i], last.views[i], distances[i]);
+    }
+    if (!age.held) age = {.views = views, .moves = 0, .held = false};
+    return age;
+}
+
+/// Resources of the node.
+struct FocusNode {
+    SceneData scene;
+    Tracing tracing;
+    ValueHandle<std::vector<ViewRequest>> requests;
+    FocusClock clock;
+    std::optional<ValueHandle<FocusRecord>> record;  // with a clock
+    SurfelFoci out;
+};
+
+void find_foci(Execution& run, const FocusNode& node, std::uint32_t count) {
+    const TracedScene traced{*run.value(node.tracing.hierarchy), run.value(node.scene.layout),
+                             run.value(node.scene.placement)};
+    const SceneMetrics& metrics = run.value(node.tracing.metrics);
+    FocusRecord now{.foci = {}, .views = {}, .count = count, .guide = {}};
+    std::vector<float> distances;
+    for (const ViewRequest& request : run.value(node.requests)) {
+        now.views.push_back(requested_view(run.world(), request));
+        distances.push_back(view_distance(now.views.back(), traced, metrics.ray_offset()));
+    }
+    const FocusRecord* const last = node.record ? run.previous(*node.record) : nullptr;
+    const bool same_views = last != nullptr && last->views == now.views && last->count == count;
+    const bool moves = run.changed(node.scene.placement) || run.changed(node.scene.layout);
+    const bool waits = last != nullptr && run.value(*node.clock.updates).waits;
+    const bool holds = same_views && (moves || waits);
+    const std::vector<Focus> wanted = foci_of(now.views, distances, metrics.area, count);
+    const bool differ = same_views && wanted != last->foci;
+    now.foci = holds ? last->foci : wanted;
+    run.set(node.out.of_maps, focus_of_maps(now.foci));
+    run.set(node.out.foci, now.foci);
+    if (!node.record) return;
+    const bool same_light = !node.clock.lights || !run.changed(*node.clock.lights);
+    // A limit that the surfels do not reach changes nothing.
+    const bool is_limited = node.clock.lights && run.value(*node.clock.updates).limit < count;
+    const bool anything_moves = moves || !same_views || !same_light;
+    now.guide = guide_age(last != nullptr ? last->guide : GuideAge{}, now.views, distances,
+                          is_limited && anything_moves, is_limited && waits);
+    const bool was_held = last != nullptr && last->guide.held;
+    run.set(*node.out.holds_guide, bool{now.guide.held});
+    run.set(*node.out.state,
+            {.held = (differ && holds) || now.guide.held,
+             .renewed = same_views && ((differ && !holds) || (was_held && !now.guide.held))});
+    run.set(*node.record, std::move(now));
+}
+
 }  // namespace
+
+std::vector<Ray> rays_through(const CameraView& view, const glm::ivec2& grid) {
+    const glm::vec3 forward = forward_of(view);
+    std::vector<Ray> rays;
+    for (int i = 0; i < grid.x * grid.y; ++i) {
+        const glm::vec2 cell(i % grid.x, i / grid.x);
+        const glm::vec2 at = (2.0F * cell + 1.0F) / glm::vec2(grid) - 1.0F;
+        const glm::vec4 near = view.world_from_clip * glm::vec4(at, 1.0F, 1.0F);
+        const glm::vec3 origin = glm::vec3(near) / near.w;
+        rays.push_back({origin, view.orthographic ? forward : glm::normalize(origin - view.eye)});
+    }
+    return rays;
+}
 
 Focus focus_of_maps(std::span<const Focus> foci) {
     if (foci.size() != 1) return {};
@@ -142,7 +217,7 @@ float density_at(std::span<const Focus> foci, const glm::vec3& place) {
 
 SurfelFoci add_surfel_focus(FrameGraph& graph, const SceneData& scene, const Tracing& tracing,
                             ValueHandle<std::vector<ViewRequest>> requests, std::uint32_t count,
-                            std::optional<ValueHandle<UpdateClock>> clock) {
+                            const FocusClock& clock) {
     return graph.add("surfel-focus", [&](Pass& pass) {
         pass.read(scene.layout);
         pass.read(scene.placement);
@@ -152,36 +227,24 @@ SurfelFoci add_surfel_focus(FrameGraph& graph, const SceneData& scene, const Tra
         pass.read<Camera>();
         pass.read<Transform>();
         pass.parameter(count);
-        SurfelFoci out{.foci = {}, .of_maps = pass.write(graph.value<Focus>("focus of maps")), .state = {}};
-        std::optional<ValueHandle<FocusRecord>> record;
-        if (clock) {
+        FocusNode node{.scene = scene,
+                       .tracing = tracing,
+                       .requests = requests,
+                       .clock = clock,
+                       .record = {},
+                       .out = {}};
+        node.out.of_maps = pass.write(graph.value<Focus>("focus of maps"));
+        if (clock.updates) {
             pass.keeps_state();
-            pass.read(*clock);
-            out.state = pass.write(graph.value<FocusState>("state of foci"));
-            record = pass.update(graph.value<FocusRecord>("last foci"));
+            pass.read(*clock.updates);
+            if (clock.lights) pass.read(*clock.lights);
+            node.out.state = pass.write(graph.value<FocusState>("state of foci"));
+            node.out.holds_guide = pass.write(graph.value<bool>("whether the guide stays"));
+            node.record = pass.update(graph.value<FocusRecord>("last foci"));
         }
-        out.foci = pass.write(graph.value<std::vector<Focus>>("surfel foci"));
-        pass.run([=](Execution& run) {
-            const TracedScene traced{*run.value(tracing.hierarchy), run.value(scene.layout),
-                                     run.value(scene.placement)};
-            FocusRecord now{.foci = {}, .views = {}, .count = count};
-            for (const ViewRequest& request : run.value(requests)) {
-                now.views.push_back(requested_view(run.world(), request));
-            }
-            const FocusRecord* const last = record ? run.previous(*record) : nullptr;
-            const bool same_views = last != nullptr && last->views == now.views && last->count == count;
-            const bool moves = run.changed(scene.placement) || run.changed(scene.layout);
-            const bool holds = same_views && (moves || run.value(*clock).waits);
-            const std::vector<Focus> wanted = foci_of(now.views, traced, run.value(tracing.metrics), count);
-            const bool differ = same_views && wanted != last->foci;
-            now.foci = holds ? last->foci : wanted;
-            run.set(out.of_maps, focus_of_maps(now.foci));
-            run.set(out.foci, now.foci);
-            if (!record) return;
-            run.set(*out.state, {.held = differ && holds, .renewed = differ && !holds});
-            run.set(*record, std::move(now));
-        });
-        return out;
+        node.out.foci = pass.write(graph.value<std::vector<Focus>>("surfel foci"));
+        pass.run([=](Execution& run) { find_foci(run, node, count); });
+        return node.out;
     });
 }
 

@@ -105,22 +105,45 @@ std::vector<SurfelPlacement::Root> SurfelPlacement::roots_of(bool emitting) {
     return roots;
 }
 
+/// Area times density counts so much beside the shares of a guide: surfaces that send little light must also
+/// gather, and the guide does not see all.
+SurfelPlacement::Weights SurfelPlacement::weights_of(std::span<const std::vector<Focus>> foci,
+                                                     std::span<const GuidePoint> guide) const {
+    constexpr double weight_of_area = 0.2;
+    Weights weights{.foci = foci, .guide = guide};
+    double shares = 0.0, area = 0.0;
+    for (const GuidePoint& point : guide) {
+        const std::uint32_t triangle = point.place.triangle;
+        const glm::vec3 place = position_of(scene_.triangles[triangle], point.place.weights);
+        shares += static_cast<double>(point.share);
+        area += static_cast<double>(point.area * density_at(foci_of(scene_.item_of[triangle], foci), place));
+    }
+    if (!(shares > 0.0) || !(area > 0.0)) return weights;
+    weights.of_share = 1.0 / shares;
+    weights.of_area = weight_of_area / area;
+    return weights;
+}
+
 /// How much a cell is worth to be cut.
-double SurfelPlacement::weight_of(const Cell& cell, std::span<const std::vector<Focus>> foci) const {
+double SurfelPlacement::weight_of(const Cell& cell, const Weights& weights) const {
     constexpr double weight_of_bend = 4.0;
     const Patch& patch = tree_[cell.patch];
-    const auto density = static_cast<double>(density_in(patch.box, foci_of(cell.item, foci)));
-    return patch.area * cell.scale * density * (1.0 + weight_of_bend * static_cast<double>(patch.bend));
+    const auto density = static_cast<double>(density_in(patch.box, foci_of(cell.item, weights.foci)));
+    double share = 0.0;
+    for (const std::uint32_t i : cell.guides) share += static_cast<double>(weights.guide[i].share);
+    const double size = weights.of_share * share + weights.of_area * patch.area * cell.scale * density;
+    return size * (1.0 + weight_of_bend * static_cast<double>(patch.bend));
 }
 
 /// Items that stand for all: each is chosen with a probability, a power of 1/2, that is proportional to its
 /// weight, and stands for the inverse of it. At least one.
-std::vector<SurfelPlacement::Cell> SurfelPlacement::share_items(
-    const std::vector<Root>& roots, std::uint32_t count, std::span<const std::vector<Focus>> foci) const {
+std::vector<SurfelPlacement::Cell> SurfelPlacement::share_items(const std::vector<Root>& roots,
+                                                                std::uint32_t count,
+                                                                const Weights& by_size) const {
     std::vector<double> weights;
     double largest = 0.0;
     for (const Root& root : roots) {
-        weights.push_back(weight_of({root.patch, root.item}, foci));
+        weights.push_back(weight_of({root.patch, root.item}, by_size));
         largest = std::max(largest, weights.back());
     }
     // A weight of `whole` or more is chosen in any case.
@@ -147,10 +170,43 @@ std::vector<SurfelPlacement::Cell> SurfelPlacement::share_items(
     return cells;
 }
 
+/// Each item as a cell.
+std::vector<SurfelPlacement::Cell> SurfelPlacement::whole_items(const std::vector<Root>& roots,
+                                                                const Weights& weights) const {
+    std::map<std::uint32_t, std::vector<std::uint32_t>> guides;  // by item
+    for (std::uint32_t i = 0; i < weights.guide.size(); ++i) {
+        guides[scene_.item_of[weights.guide[i].place.triangle]].push_back(i);
+    }
+    std::vector<Cell> cells;
+    cells.reserve(roots.size());
+    for (const Root& root : roots) {
+        cells.push_back({root.patch, root.item, 1.0, 0, std::move(guides[root.item])});
+    }
+    return cells;
+}
+
+/// Replaces a cell, whose patch is cut, by its two halves.
+void SurfelPlacement::split(std::vector<Cell>& cells, std::size_t index,
+                            std::span<const GuidePoint> guide) const {
+    const Cell whole = std::move(cells[index]);
+    std::array<std::vector<std::uint32_t>, 2> guides;
+    for (const std::uint32_t i : whole.guides) {
+        const SurfacePoint& place = guide[i].place;
+        const gpu::TraceTriangle& triangle = scene_.triangles[place.triangle];
+        const std::uint32_t half =
+            tree_.half_at(whole.patch, position_of(triangle, place.weights), normal_of(triangle, place.back));
+        guides[half].push_back(i);
+    }
+    const std::uint32_t first = tree_[whole.patch].first;
+    cells[index] = {first, whole.item, whole.scale, whole.branch, std::move(guides[0])};
+    cells.push_back({first + 1, whole.item, whole.scale, whole.branch, std::move(guides[1])});
+}
+
 /// Cuts cells, always the one of the greatest weight, until there are `count`.
 template <class Weight>
 std::vector<SurfelPlacement::Cell> SurfelPlacement::cut(std::vector<Cell> cells, std::uint32_t count,
-                                                        const Weight& weight) {
+                                                        const Weight& weight,
+                                                        std::span<const GuidePoint> guide) {
     // The id makes the order of equal weights independent of the tree's.
     using Entry = std::tuple<double, std::uint64_t, std::size_t>;
     std::priority_queue<Entry> next;
@@ -160,9 +216,7 @@ std::vector<SurfelPlacement::Cell> SurfelPlacement::cut(std::vector<Cell> cells,
         const std::size_t i = std::get<2>(next.top());
         next.pop();
         if (!tree_.cut(cells[i].patch)) continue;
-        const std::uint32_t first = tree_[cells[i].patch].first;
-        cells[i].patch = first;
-        cells.push_back({first + 1, cells[i].item, cells[i].scale, cells[i].branch});
+        split(cells, i, guide);
         queue(i);
         queue(cells.size() - 1);
     }
@@ -170,30 +224,26 @@ std::vector<SurfelPlacement::Cell> SurfelPlacement::cut(std::vector<Cell> cells,
 }
 
 std::vector<SurfelPlacement::Cell> SurfelPlacement::cells_on(const std::vector<Root>& roots,
-                                                             std::uint32_t count,
-                                                             std::span<const std::vector<Focus>> foci) {
+                                                             std::uint32_t count, const Weights& weights) {
     if (count == 0 || roots.empty()) return {};
-    std::vector<Cell> cells;
-    if (shares_items(roots.size(), count)) {
-        cells = share_items(roots, count, foci);
-    } else {
-        for (const Root& root : roots) cells.push_back({root.patch, root.item});
-    }
+    std::vector<Cell> cells =
+        shares_items(roots.size(), count) ? share_items(roots, count, weights) : whole_items(roots, weights);
     // Patches of equal size are not all cut at once: that would leave large areas of cells of twice the size.
     const auto weight = [&](const Cell& cell) {
-        return weight_of(cell, foci) * std::exp2(random_of(tree_[cell.patch].id, use_weight));
+        return weight_of(cell, weights) * std::exp2(random_of(tree_[cell.patch].id, use_weight));
     };
-    cells = cut(std::move(cells), std::min(count, most_branches), weight);
+    cells = cut(std::move(cells), std::min(count, most_branches), weight, weights.guide);
     for (std::uint32_t i = 0; i < cells.size(); ++i) cells[i].branch = i;
     if (count <= most_branches) return cells;
-    cells = cut(std::move(cells), count, weight);
+    cells = cut(std::move(cells), count, weight, weights.guide);
     std::ranges::stable_sort(cells, {}, &Cell::branch);
     return cells;
 }
 
 /// Appends the surfel of a cell.
 void SurfelPlacement::append(SurfelSet& set, const Cell& cell, std::uint32_t points) {
-    std::vector<Cell> parts = cut({cell}, points, [&](const Cell& part) { return tree_[part.patch].area; });
+    std::vector<Cell> parts = cut({{cell.patch, cell.item, cell.scale}}, points,
+                                  [&](const Cell& part) { return tree_[part.patch].area; });
     // At random: neighbours in this order share sources of light among them.
     std::ranges::sort(parts, {},
                       [&](const Cell& part) { return random_of(tree_[part.patch].id, use_order); });
@@ -229,16 +279,18 @@ void SurfelPlacement::append(SurfelSet& set, const Cell& cell, std::uint32_t poi
         combine_ids(patch.id, combine_ids(std::bit_cast<std::uint64_t>(cell.scale), use_scale)));
 }
 
-SurfelSet SurfelPlacement::place(const SurfelCounts& counts, std::span<const std::vector<Focus>> foci) {
+SurfelSet SurfelPlacement::place(const SurfelCounts& counts, std::span<const std::vector<Focus>> foci,
+                                 std::span<const GuidePoint> guide) {
     if (tree_.size() > scene_.triangles.size() +
                            std::size_t{most_patches_a_surfel} * (counts.reflecting + counts.emitting)) {
         plant();
     }
     SurfelSet set;
-    for (const Cell& cell : cells_on(reflecting_, counts.reflecting, foci))
+    for (const Cell& cell : cells_on(reflecting_, counts.reflecting, weights_of(foci, guide)))
         append(set, cell, points_a_surfel);
     const std::size_t reflecting = set.surfels.size();
-    for (const Cell& cell : cells_on(emitting_, counts.emitting, foci)) append(set, cell, points_an_emitter);
+    for (const Cell& cell : cells_on(emitting_, counts.emitting, weights_of(foci, {})))
+        append(set, cell, points_an_emitter);
     set.emitting_count = static_cast<std::uint32_t>(set.surfels.size() - reflecting);
     return set;
 }

@@ -31,13 +31,13 @@ struct SurfelSet {
     std::uint32_t emitting_count = 0;  ///< surfels that emit light: the last ones
 };
 
-/// The triangles of a scene, on which surfels are placed.
 /// What a triangle looks like whose emission lies by second texture coordinates.
 struct SecondEmission {
     std::array<glm::vec2, 3> uvs{};            ///< the second, by corner
     std::shared_ptr<const Image> base_colour;  ///< which lies by those of the triangle; null: none
 };
 
+/// The triangles of a scene, on which surfels are placed.
 struct SceneTriangles {
     std::vector<gpu::TraceTriangle> triangles;
     std::vector<std::uint32_t> item_of;  ///< by triangle: index into SceneGeometry::items
@@ -67,6 +67,14 @@ inline constexpr std::uint32_t points_an_emitter = 64;
     return items > std::max(count / 4, few_items);
 }
 
+/// A point of surfaces that reflect light, and how much of the light that views see it sends, directly.
+struct GuidePoint {
+    SurfacePoint place;
+    float area = 0.0F;   ///< m², of the surface that it stands for
+    float share = 0.0F;  ///< in any unit
+    bool operator==(const GuidePoint&) const = default;
+};
+
 /// How many surfels are placed at most on surfaces that do not emit light, and on those that do.
 struct SurfelCounts {
     std::uint32_t reflecting = 0;
@@ -76,10 +84,11 @@ struct SurfelCounts {
 
 /// Places surfels on the triangles that reflect light, and likewise on those that emit it, on both sides
 /// where the material is double-sided. The surfaces of an item are the root of a tree of patches. A cell is a
-/// patch: the trees are cut where area times density (density_at) is greatest, weighted by how much surfaces
-/// bend (Patch::bend), until there are as many cells as are wanted. The parts of the cell are its sample
-/// points, and the point nearest to its centre is its surfel. If there are more than 16 items, and more than
-/// a quarter as many as surfels wanted, some, chosen at random, also stand for others.
+/// patch: the trees are cut where the sum of shares (GuidePoint) and of area times density (density_at) is
+/// greatest, weighted by how much surfaces bend (Patch::bend), until there are as many cells as are wanted.
+/// The parts of the cell are its sample points, and the point nearest to its centre is its surfel. If there
+/// are more than 16 items, and more than a quarter as many as surfels wanted, some, chosen at random, also
+/// stand for others.
 ///
 /// A patch has the same cell wherever the focus is. The set depends on the arguments of the constructor and
 /// of `place` only: the trees are kept between calls just to save time.
@@ -91,8 +100,9 @@ class SurfelPlacement {
     ~SurfelPlacement() = default;
 
     /// `foci`: by item, in the triangles' space; an item without any has the density of a focus everywhere.
-    /// Empty: no item has any.
-    [[nodiscard]] SurfelSet place(const SurfelCounts& counts, std::span<const std::vector<Focus>> foci = {});
+    /// Empty: no item has any. `guide`: on these triangles; empty: only area and density count.
+    [[nodiscard]] SurfelSet place(const SurfelCounts& counts, std::span<const std::vector<Focus>> foci = {},
+                                  std::span<const GuidePoint> guide = {});
 
  private:
     /// The surfaces of an item.
@@ -106,17 +116,30 @@ class SurfelPlacement {
         std::uint32_t item = 0;
         double scale = 1.0;  ///< how many times its area it stands for
         std::uint32_t branch = 0;
+        std::vector<std::uint32_t> guides{};  ///< indices of the guide's points in it
+    };
+    /// By what trees are cut.
+    struct Weights {
+        std::span<const std::vector<Focus>> foci;
+        std::span<const GuidePoint> guide;
+        double of_share = 0.0;
+        double of_area = 1.0;
     };
 
     void plant();
     [[nodiscard]] std::vector<Root> roots_of(bool emitting);
-    [[nodiscard]] double weight_of(const Cell& cell, std::span<const std::vector<Focus>> foci) const;
+    [[nodiscard]] Weights weights_of(std::span<const std::vector<Focus>> foci,
+                                     std::span<const GuidePoint> guide) const;
+    [[nodiscard]] double weight_of(const Cell& cell, const Weights& weights) const;
     [[nodiscard]] std::vector<Cell> share_items(const std::vector<Root>& roots, std::uint32_t count,
-                                                std::span<const std::vector<Focus>> foci) const;
+                                                const Weights& weights) const;
+    [[nodiscard]] std::vector<Cell> whole_items(const std::vector<Root>& roots, const Weights& weights) const;
     [[nodiscard]] std::vector<Cell> cells_on(const std::vector<Root>& roots, std::uint32_t count,
-                                             std::span<const std::vector<Focus>> foci);
+                                             const Weights& weights);
+    void split(std::vector<Cell>& cells, std::size_t index, std::span<const GuidePoint> guide) const;
     template <class Weight>
-    [[nodiscard]] std::vector<Cell> cut(std::vector<Cell> cells, std::uint32_t count, const Weight& weight);
+    [[nodiscard]] std::vector<Cell> cut(std::vector<Cell> cells, std::uint32_t count, const Weight& weight,
+                                        std::span<const GuidePoint> guide = {});
     void append(SurfelSet& set, const Cell& cell, std::uint32_t points);
 
     SceneTriangles scene_;

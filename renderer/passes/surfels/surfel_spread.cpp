@@ -104,16 +104,20 @@ std::vector<std::vector<Focus>> foci_by_item(const SceneLayout& layout, const Sc
 }
 
 SpreadSurfels spread(const SpreadSurfels* last, const SceneLayout& layout, const ScenePlacement& placement,
-                     const std::vector<Focus>& foci, const SurfelCounts& counts, std::uint32_t seed) {
+                     const std::vector<Focus>& foci, const SurfelGuide* guide, const SurfelCounts& counts,
+                     std::uint32_t seed) {
     SpreadSurfels now;
     now.placement_key = {layout.geometry, shapes_of(placement), seed};
-    now.key = {counts, foci_by_item(layout, placement, now.placement_key.shapes, foci)};
+    now.key = {.counts = counts,
+               .foci = foci_by_item(layout, placement, now.placement_key.shapes, foci),
+               .guide = {}};
+    if (guide != nullptr && guide->is_of(now.placement_key)) now.key.guide = guide->points;
     const bool same_items = last != nullptr && last->placement_key == now.placement_key;
     if (same_items && last->key == now.key) return *last;
     now.placement = same_items
                         ? last->placement
                         : std::make_shared<SurfelPlacement>(triangles_of(layout, now.placement_key), seed);
-    now.set = std::make_shared<const SurfelSet>(now.placement->place(counts, now.key.foci));
+    now.set = std::make_shared<const SurfelSet>(now.placement->place(counts, now.key.foci, now.key.guide));
     return now;
 }
 
@@ -238,12 +242,13 @@ SurfelSet placed_in_world(const SpreadSurfels& spread, const SceneLayout& layout
 }
 
 ValueHandle<SpreadSurfels> add_surfel_spread(FrameGraph& graph, const SceneData& scene,
-                                             const SurfelSetChoice& set, ValueHandle<std::vector<Focus>> foci,
+                                             const SurfelSetChoice& set, const SpreadInputs& inputs,
                                              const VplSettings& settings) {
     return graph.add("surfel-spread", [&](Pass& pass) {
         pass.read(scene.layout);
         pass.read(scene.placement);
-        pass.read(foci);
+        pass.read(inputs.foci);
+        if (inputs.guide) pass.read(*inputs.guide);
         set.read(pass);
         const SurfelCounts counts{.reflecting = settings.bounces > 0 ? settings.count : 0,
                                   .emitting = emitting_surfels(settings.count)};
@@ -252,8 +257,9 @@ ValueHandle<SpreadSurfels> add_surfel_spread(FrameGraph& graph, const SceneData&
         pass.keeps_state();
         const auto out = pass.update(graph.value<SpreadSurfels>("spread surfels"));
         pass.run([=, layout = scene.layout, placement = scene.placement](Execution& run) {
-            run.set(out, spread(run.previous(out), run.value(layout), run.value(placement), run.value(foci),
-                                counts, settings.seed + set.number(run)));
+            const SurfelGuide* const guide = inputs.guide ? &run.value(*inputs.guide) : nullptr;
+            run.set(out, spread(run.previous(out), run.value(layout), run.value(placement),
+                                run.value(inputs.foci), guide, counts, settings.seed + set.number(run)));
         });
         return out;
     });

@@ -31,10 +31,23 @@ struct PlacementKey {
     bool operator==(const PlacementKey&) const = default;
 };
 
+/// Where the light comes from that the views see: see add_surfel_guide.
+struct SurfelGuide {
+    PlacementKey key;                ///< of the triangles that the points are on
+    std::vector<GuidePoint> points;  ///< of a coarse set's cells
+    bool operator==(const SurfelGuide&) const = default;
+
+    /// Whether it tells about these items. Seeds may differ.
+    [[nodiscard]] bool is_of(const PlacementKey& other) const {
+        return key.geometry == other.geometry && key.shapes == other.shapes;
+    }
+};
+
 /// What the set of surfels depends on besides.
 struct SetKey {
     SurfelCounts counts;
     std::vector<std::vector<Focus>> foci;  // by item, in its shape space
+    std::vector<GuidePoint> guide;
     bool operator==(const SetKey&) const = default;
 };
 
@@ -51,13 +64,19 @@ struct SpreadSurfels {
 [[nodiscard]] SurfelSet placed_in_world(const SpreadSurfels& spread, const SceneLayout& layout,
                                         const ScenePlacement& placement);
 
-/// Adds node `surfel-spread` (CPU): places the surfels of a set on the items, densely in the foci. Surfels
-/// belong to the items of the scene and move with them: all are placed again when an item is added, removed
-/// or changes its shape. Depends on the scene's layout and placement, on foci and the set; its own last
-/// result saves time.
+/// What surfels are placed by. Without a guide, by area and foci alone.
+struct SpreadInputs {
+    ValueHandle<std::vector<Focus>> foci;
+    std::optional<ValueHandle<SurfelGuide>> guide{};
+};
+
+/// Adds node `surfel-spread` (CPU): places the surfels of a set on the items, densely in the foci and where
+/// the light comes from that is seen. Surfels belong to the items of the scene and move with them: all are
+/// placed again when an item is added, removed or changes its shape. Depends on the scene's layout and
+/// placement, on foci, guide and the set; its own last result saves time.
 [[nodiscard]] ValueHandle<SpreadSurfels> add_surfel_spread(FrameGraph& graph, const SceneData& scene,
                                                            const SurfelSetChoice& set,
-                                                           ValueHandle<std::vector<Focus>> foci,
+                                                           const SpreadInputs& inputs,
                                                            const VplSettings& settings);
 
 }  // namespace candela

@@ -74,6 +74,15 @@ std::vector<SurfelPlace> places_of(const SurfelSet& set) {
     return places;
 }
 
+std::vector<CellPlace> cell_places_of(const SurfelSet& set) {
+    std::vector<CellPlace> places;
+    places.reserve(set.points.size());
+    for (std::size_t i = 0; i < set.points.size(); ++i) {
+        places.push_back({set.point_places[i], set.points[i].area, set.points[i].surfel});
+    }
+    return places;
+}
+
 /// Resources of surfels in groups.
 struct GroupNode {
     ValueHandle<DividedCells> divided;  // the branches
@@ -137,6 +146,7 @@ void place_surfels(const Gpu& gpu, Execution& run, const SurfelNode& node) {
     run.set(out.counts, counts);
     run.set(out.point_count, static_cast<std::uint32_t>(set.points.size()));
     run.set(out.places, places_of(set));
+    run.set(out.cell_places, cell_places_of(set));
     run.set(out.ids, std::move(set.ids));
     run.set(out.cells, std::move(cell_ids));
 }
@@ -163,6 +173,7 @@ Surfels add_surfels(FrameGraph& graph, const Gpu& gpu, const SceneData& scene, c
             .ids = pass.write(graph.value<std::vector<std::uint64_t>>("surfel ids")),
             .cells = pass.write(graph.value<std::vector<std::uint64_t>>("surfel cells")),
             .places = pass.write(graph.value<std::vector<SurfelPlace>>("surfel places")),
+            .cell_places = pass.write(graph.value<std::vector<CellPlace>>("places of cell points")),
             .maps = pass.update(graph.value<SurfelMaps>("surfel maps")),
             .surfels = pass.write(growing_buffer<gpu::Surfel>(graph, "surfels"), Usage::copy),
             .points = pass.write(growing_buffer<gpu::CellPoint>(graph, "cell points"), Usage::copy),

@@ -26,6 +26,14 @@ struct SurfelPlace {
     bool operator==(const SurfelPlace&) const = default;
 };
 
+/// Where a point of a cell is on the triangles of the placement.
+struct CellPlace {
+    SurfacePoint place;
+    float area = 0.0F;         ///< m², that it stands for
+    std::uint32_t surfel = 0;  ///< whose cell it is of
+    bool operator==(const CellPlace&) const = default;
+};
+
 /// The surfels in world space.
 struct Surfels {
     ValueHandle<VplCounts> counts;
@@ -37,8 +45,9 @@ struct Surfels {
     /// of an item, also while it moves.
     ValueHandle<std::vector<std::uint64_t>> cells{};
     ValueHandle<std::vector<SurfelPlace>> places{};
-    ValueHandle<SurfelMaps> maps;       ///< of those that do not emit light
-    BufferHandle<gpu::Surfel> surfels;  ///< those that emit light are the last ones
+    ValueHandle<std::vector<CellPlace>> cell_places{};  ///< by point of their cells
+    ValueHandle<SurfelMaps> maps;                       ///< of those that do not emit light
+    BufferHandle<gpu::Surfel> surfels;                  ///< those that emit light are the last ones
     BufferHandle<gpu::CellPoint> points;
     std::optional<BufferHandle<gpu::SurfelGroup>> groups{};  ///< VplCounts::groups; none: there are none
     std::uint32_t group_size = 1;                            ///< surfels_a_group

@@ -285,6 +285,7 @@ class CANDELA_API GraphRuntime {
     void mark(const World& world, std::uint32_t from);
     void mark_dirty(const World& world, std::uint32_t from);
     [[nodiscard]] bool mark_missing(std::uint32_t from);
+    [[nodiscard]] bool is_held(const detail::Step& step) const;
     [[nodiscard]] bool dirty(const detail::Step& step, const World& world) const;
     void run_step(Execution& execution, bool changed);
     void begin_outputs(const detail::Step& step);

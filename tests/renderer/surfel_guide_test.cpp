@@ -1,0 +1,127 @@
+// Surfels are where the light comes from that is seen.
+
+#include <doctest/doctest.h>
+
+#include <algorithm>
+#include <cstdint>
+#include <vector>
+
+#include "renderer/facade/device_of.hpp"
+#include "renderer/gpu/gpu_types.hpp"
+#include "tests/renderer/path_fixture.hpp"
+#include "tests/renderer/scene_builder.hpp"
+#include "tests/seed.hpp"
+
+TEST_SUITE("surfels: guide") {
+
+using namespace candela;
+
+namespace {
+
+constexpr glm::uvec2 size{24, 16};
+constexpr float apart = 4.0F;  // metres, of the middles of two rooms
+
+/// Two closed rooms of the same size, each with a lamp of its own. The camera is in the one at the origin.
+Scene closed_rooms() {
+    Scene scene = furnace_box(0.5F);
+    add(scene.world, at({apart, 0.0F, 0.0F}), MeshInstance{box_inwards(1.0F, diffuse(glm::vec3(0.5F)))});
+    add(scene.world, at({apart, 0.3F, 0.0F}), PointLight{});
+    return scene;
+}
+
+class GuideTests : public RenderFixture {
+ protected:
+    GuideTests() {
+        configuration_.show = Show::indirect;
+        configuration_.vpls = {.placement = VplPlacement::surfels, .count = 256, .seed = test_seed()};
+        configuration_.vpls.guided = true;
+        configuration_.visibility.method = VplVisibility::none;
+    }
+
+    std::vector<gpu::LitSurfel> surfels_of(const Scene& scene) {
+        const RenderView view{.camera = scene.camera, .target = target_.target(), .keep = {.vpls = true}};
+        renderer.render(scene.world, {&view, 1});
+        const ResultBuffer result = renderer.results().lit_surfels;
+        std::vector<gpu::LitSurfel> surfels(result.count);
+        device.gl().GetNamedBufferSubData(result.buffer, 0,
+                                          static_cast<GLsizeiptr>(surfels.size() * sizeof(gpu::LitSurfel)),
+                                          surfels.data());
+        return surfels;
+    }
+
+    Configuration configuration_ = linear_configuration();
+
+ private:
+    RenderTarget target_{device, size};
+};
+
+/// Share of the surfels of which `holds` is true.
+template <class Holds>
+double share_of(const std::vector<gpu::LitSurfel>& surfels, const Holds& holds) {
+    return static_cast<double>(std::ranges::count_if(surfels, holds)) / static_cast<double>(surfels.size());
+}
+
+}  // namespace
+
+TEST_CASE_FIXTURE(GuideTests,
+                  "a room that nothing is seen of, and that lights nothing seen, has few surfels") {
+    configure(configuration_);
+    const auto is_elsewhere = [](const gpu::LitSurfel& surfel) { return surfel.position.x > 0.5F * apart; };
+    // By area alone it would be half. Light counts 1 and area 0.2, of which half is there: 0.1 / 1.2 = 0.083.
+    // Cells are not equally worth, within a factor of 2, so that there are more or fewer.
+    const double share = share_of(surfels_of(closed_rooms()), is_elsewhere);
+    CHECK(share < 2.0 * 0.083);
+    CHECK(share > 0.5 * 0.083);
+}
+
+TEST_CASE_FIXTURE(GuideTests, "what is brighter has more surfels, in proportion to what it sends") {
+    Scene scene = furnace_box(0.5F);
+    // A spot that lights the middle of the ceiling: nearly all light of the first bounce comes from there.
+    scene.world.remove<PointLight>(scene.light);
+    scene.world.set(scene.light, looking({0.0F, 0.0F, 0.0F}, {0.0F, 1.0F, 0.0F}, {0, 0, 1}));
+    scene.world.set(scene.light, SpotLight{.inner_cone = 0.3F, .outer_cone = 0.35F});
+    configure(configuration_);
+    // The lit disc has a radius of tan 0.35 = 0.365 m, and thus 0.42 of the 24 m² in all.
+    const auto is_lit = [](const gpu::LitSurfel& surfel) {
+        return surfel.position.y > 0.99F &&
+               glm::length(glm::vec2(surfel.position.x, surfel.position.z)) < 0.4F;
+    };
+    // With albedo 0.5, half of what the surfaces reflect is the first reflection, in a closed room: 1/2 = Σ
+    // ρᵏ of the further bounces. What lights the disc itself is missing there, so that it is between.
+    const double share = share_of(surfels_of(scene), is_lit);
+    CHECK(share > 0.25);
+    CHECK(share < 0.65);
+}
+
+TEST_CASE_FIXTURE(GuideTests,
+                  "where surfels wait for their turn, the guide stays while a light moves, not longer") {
+    Scene scene = furnace_box(0.5F);
+    configuration_.vpls.updates = 32;
+    configure(configuration_);
+    static_cast<void>(settled_picture(scene, size));
+    scene.world.set(scene.light, at({-0.5F, -0.4F, 0.3F}));
+    static_cast<void>(render(scene, size));
+    CHECK_FALSE(ran("surfel-guide (guide)"));
+    CHECK_FALSE(ran("surfel-light (guide)"));
+    CHECK_FALSE(renderer.settled());
+    static_cast<void>(render(scene, size));
+    CHECK(ran("surfel-guide (guide)"));
+    CHECK(settled_picture(scene, size).pixels == fresh_picture(scene, size).pixels);
+}
+
+TEST_CASE_FIXTURE(GuideTests, "a light that moves for long does not keep the guide") {
+    Scene scene = furnace_box(0.5F);
+    configuration_.vpls.updates = 64;
+    configure(configuration_);
+    static_cast<void>(settled_picture(scene, size));
+    int runs = 0;
+    for (int i = 1; i <= 36; ++i) {
+        scene.world.set(scene.light, at({0.02F * static_cast<float>(i), 0.0F, 0.0F}));
+        static_cast<void>(render(scene, size));
+        if (ran("surfel-guide (guide)")) ++runs;
+    }
+    // After 16 frames each.
+    CHECK(runs == 2);
+}
+
+}  // TEST_SUITE("surfels: guide")
