@@ -86,8 +86,9 @@ TEST_CASE_FIXTURE(GuideTests, "what is brighter has more surfels, in proportion 
         return surfel.position.y > 0.99F &&
                glm::length(glm::vec2(surfel.position.x, surfel.position.z)) < 0.4F;
     };
-    // With albedo 0.5, half of what the surfaces reflect is the first reflection, in a closed room: 1/2 = Σ
-    // ρᵏ of the further bounces. What lights the disc itself is missing there, so that it is between.
+    // With albedo 0.5, the first reflection is half of all that surfaces of a closed room reflect, and thus
+    // half of what lights five of the six sides; the ceiling does not see the disc. Light counts 1 of 1.2:
+    // 0.35. The worth of cells varies by a factor of 2, so that there are more or fewer.
     const double share = share_of(surfels_of(scene), is_lit);
     CHECK(share > 0.25);
     CHECK(share < 0.65);

@@ -207,19 +207,21 @@ std::optional<std::uint32_t> PatchTree::add_root(std::vector<Fragment> fragments
 
 bool PatchTree::cut(std::uint32_t patch) {
     if (patches_[patch].first != 0 || patches_[patch].is_whole) return !patches_[patch].is_whole;
-    if (cut_at_its_place(patch)) return true;
+    if (try_cut(patch)) return true;
     patches_[patch].at = patches_[patch].middle;
-    patches_[patch].is_whole = !cut_at_its_place(patch);
+    patches_[patch].is_whole = !try_cut(patch);
     return !patches_[patch].is_whole;
 }
 
-std::uint32_t PatchTree::half_at(std::uint32_t patch, const glm::vec3& place, const glm::vec3& normal) const {
+std::uint32_t PatchTree::half_of(std::uint32_t patch, const SurfacePoint& point) const {
     const Patch& cut = patches_[patch];
-    const float along = (cut.cuts_normals ? normal : place)[cut.axis];
-    return along < cut.at ? 0 : 1;
+    const gpu::TraceTriangle& triangle = triangles_[point.triangle];
+    const glm::vec3 place =
+        cut.cuts_normals ? normal_of(triangle, point.back) : position_of(triangle, point.weights);
+    return place[cut.axis] < cut.at ? 0 : 1;
 }
 
-bool PatchTree::cut_at_its_place(std::uint32_t patch) {
+bool PatchTree::try_cut(std::uint32_t patch) {
     const std::uint64_t id = patches_[patch].id;
     Halves halves = divide(triangles_, fragments_[patch], patches_[patch]);
     if (halves[0].empty() || halves[1].empty()) return false;

@@ -69,9 +69,8 @@ class PatchTree {
     /// Cuts a patch, unless it is cut already. Returns whether it could be.
     bool cut(std::uint32_t patch);
 
-    /// In which half of a patch that is cut a place is, 0 or 1. `normal`: unit.
-    [[nodiscard]] std::uint32_t half_at(std::uint32_t patch, const glm::vec3& place,
-                                        const glm::vec3& normal) const;
+    /// The half of a cut patch that a point is in, 0 or 1.
+    [[nodiscard]] std::uint32_t half_of(std::uint32_t patch, const SurfacePoint& point) const;
 
     /// The reference is valid until the next call of add_root or cut.
     [[nodiscard]] const Patch& operator[](std::uint32_t patch) const { return patches_[patch]; }
@@ -79,7 +78,7 @@ class PatchTree {
 
  private:
     std::optional<std::uint32_t> add(std::vector<Fragment> fragments, std::uint64_t id);
-    bool cut_at_its_place(std::uint32_t patch);
+    bool try_cut(std::uint32_t patch);
 
     std::span<const gpu::TraceTriangle> triangles_;
     std::vector<Patch> patches_;

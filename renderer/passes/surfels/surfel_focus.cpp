@@ -152,11 +152,13 @@ void find_foci(Execution& run, const FocusNode& node, std::uint32_t count) {
     const TracedScene traced{*run.value(node.tracing.hierarchy), run.value(node.scene.layout),
                              run.value(node.scene.placement)};
     const SceneMetrics& metrics = run.value(node.tracing.metrics);
-    FocusRecord now{.foci = {}, .views = {}, .count = count, .guide = {}};
+    FocusRecord now{.foci = {},
+                    .views = requested_views(run.world(), run.value(node.requests)),
+                    .count = count,
+                    .guide = {}};
     std::vector<float> distances;
-    for (const ViewRequest& request : run.value(node.requests)) {
-        now.views.push_back(requested_view(run.world(), request));
-        distances.push_back(view_distance(now.views.back(), traced, metrics.ray_offset()));
+    for (const CameraView& view : now.views) {
+        distances.push_back(view_distance(view, traced, metrics.ray_offset()));
     }
     const FocusRecord* const last = node.record ? run.previous(*node.record) : nullptr;
     const bool same_views = last != nullptr && last->views == now.views && last->count == count;
@@ -223,9 +225,7 @@ SurfelFoci add_surfel_focus(FrameGraph& graph, const SceneData& scene, const Tra
         pass.read(scene.placement);
         pass.read(tracing.hierarchy);
         pass.read(tracing.metrics);
-        pass.read(requests);
-        pass.read<Camera>();
-        pass.read<Transform>();
+        read_requests(pass, requests);
         pass.parameter(count);
         FocusNode node{.scene = scene,
                        .tracing = tracing,

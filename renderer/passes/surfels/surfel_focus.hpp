@@ -60,7 +60,7 @@ struct UpdateClock {
 /// What decides whether foci and guide stay.
 struct FocusClock {
     std::optional<ValueHandle<UpdateClock>> updates{};  ///< none: they never do
-    std::optional<ValueHandle<LightTable>> lights{};    ///< the guide depends on; none: there is no guide
+    std::optional<ValueHandle<LightTable>> lights{};    ///< that a guide depends on; none: there is no guide
 };
 
 /// Adds node `surfel-focus` (CPU): where surfels should be dense, one sphere for each view. It is around the

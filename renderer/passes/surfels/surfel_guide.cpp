@@ -46,8 +46,8 @@ std::vector<float> count_seen(const Execution& run, const GuideNode& node) {
                              run.value(node.scene.placement)};
     const std::vector<SurfelPlace>& places = run.value(node.surfels.places);
     std::vector<float> seen(places.size());
-    for (const ViewRequest& request : run.value(node.requests)) {
-        for (const Ray& ray : rays_through(requested_view(run.world(), request), rays_a_view)) {
+    for (const CameraView& view : requested_views(run.world(), run.value(node.requests))) {
+        for (const Ray& ray : rays_through(view, rays_a_view)) {
             const auto hit = nearest_surface(traced, ray);
             if (hit) seen[surfel_at(places, *hit)] += 1.0F;
         }
@@ -99,9 +99,7 @@ ValueHandle<SurfelGuide> add_surfel_guide(FrameGraph& graph, Gpu& gpu, const Sce
         pass.read(scene.layout);
         pass.read(scene.placement);
         pass.read(tracing.hierarchy);
-        pass.read(requests);
-        pass.read<Camera>();
-        pass.read<Transform>();
+        read_requests(pass, requests);
         pass.read(spread);
         pass.read(visibility.surfels.counts);
         pass.read(visibility.surfels.places);

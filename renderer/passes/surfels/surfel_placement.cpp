@@ -191,11 +191,7 @@ void SurfelPlacement::split(std::vector<Cell>& cells, std::size_t index,
     const Cell whole = std::move(cells[index]);
     std::array<std::vector<std::uint32_t>, 2> guides;
     for (const std::uint32_t i : whole.guides) {
-        const SurfacePoint& place = guide[i].place;
-        const gpu::TraceTriangle& triangle = scene_.triangles[place.triangle];
-        const std::uint32_t half =
-            tree_.half_at(whole.patch, position_of(triangle, place.weights), normal_of(triangle, place.back));
-        guides[half].push_back(i);
+        guides[tree_.half_of(whole.patch, guide[i].place)].push_back(i);
     }
     const std::uint32_t first = tree_[whole.patch].first;
     cells[index] = {first, whole.item, whole.scale, whole.branch, std::move(guides[0])};

@@ -121,6 +121,19 @@ void read_request(Pass& pass, ValueHandle<ViewRequest> request) {
     pass.read<Transform>();
 }
 
+std::vector<CameraView> requested_views(const World& world, const std::vector<ViewRequest>& requests) {
+    std::vector<CameraView> views;
+    views.reserve(requests.size());
+    for (const ViewRequest& request : requests) views.push_back(requested_view(world, request));
+    return views;
+}
+
+void read_requests(Pass& pass, ValueHandle<std::vector<ViewRequest>> requests) {
+    pass.read(requests);
+    pass.read<Camera>();
+    pass.read<Transform>();
+}
+
 glm::vec2 pixel_sample(std::uint32_t i) {
     if (i == 0) return glm::vec2(0.0F);
     const std::uint32_t pair = (i + 1) / 2;

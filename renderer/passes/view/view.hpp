@@ -5,6 +5,7 @@
 #include <glm/mat4x4.hpp>
 #include <glm/vec2.hpp>
 #include <string>
+#include <vector>
 
 #include <candela/ecs/world.hpp>
 #include <candela/graph/frame_graph.hpp>
@@ -32,6 +33,11 @@ struct ViewRequest {
 [[nodiscard]] CameraView requested_view(const World& world, const ViewRequest& request);
 /// Declares the reads of a pass that calls requested_view.
 void read_request(Pass& pass, ValueHandle<ViewRequest> request);
+
+/// The same for all views.
+[[nodiscard]] std::vector<CameraView> requested_views(const World& world,
+                                                      const std::vector<ViewRequest>& requests);
+void read_requests(Pass& pass, ValueHandle<std::vector<ViewRequest>> requests);
 
 /// Adds node `view` (CPU): the requested view. Depends on the request, Camera and Transform.
 [[nodiscard]] ValueHandle<CameraView> add_view(FrameGraph& graph, ValueHandle<ViewRequest> request);
