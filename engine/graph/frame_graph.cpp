@@ -181,6 +181,10 @@ void FrameGraph::hold_passes(std::optional<ValueHandle<bool>> held) {
         return;
     }
     declared_->held_by = held ? held->resource : detail::none;
+    if (!held) return;
+    const detail::Resource& by = declared_->resources[held->resource];
+    if (by.lifetime == Lifetime::imported) return;
+    declared_->error(ErrorCode::wrong_usage, "passes are held by {}, which is not imported", by.title());
 }
 
 TextureHandle FrameGraph::texture(std::string_view name, const TextureDesc& desc, Lifetime lifetime) {

@@ -19,18 +19,22 @@ void FrameSchedule::begin(const World& world, std::vector<ViewRequest> views,
     refinement_clock_.surfel_set = in_turn ? std::optional(refined_.surfel_set) : std::nullopt;
     if (std::exchange(refines_, false)) ++refinement_clock_.round;
     update_clock_.limit = configuration.vpls.updates;
-    update_clock_.waits = waiting_ > 0;
-    if (std::exchange(waits_, false)) ++update_clock_.round;
+    update_clock_.moves = moved;
+    constexpr std::uint32_t frames_a_guide = 8;  // it takes up to a fifth of the time of a frame
+    guide_waits_ = waiting_.to_be_placed.gains > 0 || (moved && ++guide_age_ < frames_a_guide);
+    if (!guide_waits_) guide_age_ = 0;
+    if (std::exchange(asks_for_more_, false)) ++update_clock_.round;
 }
 
 void FrameSchedule::complete(const FrameOutcome& outcome) {
     is_complete_ = true;
     abandoned_ = false;
     waiting_ = outcome.waiting;
-    waits_ = outcome.waits;
-    refines_ = !waits_ && outcome.refines;
+    guide_waits_ = guide_waits_ && outcome.has_guide;
+    asks_for_more_ = waits();
+    refines_ = !asks_for_more_ && outcome.refines;
     if (outcome.refinement) refined_ = *outcome.refinement;
-    next_set_is_complete_ = outcome.waiting_of_next == 0U;
+    next_set_is_complete_ = outcome.next_waits == false;
 }
 
 void FrameSchedule::abandon() {

@@ -10,7 +10,7 @@
 #include <candela/report.hpp>
 #include "renderer/frame/build_frame.hpp"
 #include "renderer/frame/frame_budget.hpp"
-#include "renderer/passes/surfels/surfel_focus.hpp"
+#include "renderer/passes/surfels/surfel_updates.hpp"
 #include "renderer/passes/view/refinement.hpp"
 #include "renderer/passes/view/view.hpp"
 
@@ -18,11 +18,11 @@ namespace candela {
 
 /// What a complete frame means for the next ones.
 struct FrameOutcome {
-    std::uint32_t waiting = 0;                       ///< surfels that wait to be traced
-    bool waits = false;                              ///< whether any do, or others may have to be placed
-    bool refines = false;                            ///< whether another frame is to be added to a mean
-    std::optional<Refinement> refinement{};          ///< none: it is off
-    std::optional<std::uint32_t> waiting_of_next{};  ///< surfels of the set that is prepared; none: none is
+    WaitingSurfels waiting{};                ///< of the set that lights the frame
+    bool has_guide = false;                  ///< that may stay
+    bool refines = false;                    ///< whether another frame is to be added to a mean
+    std::optional<Refinement> refinement{};  ///< none: it is off
+    std::optional<bool> next_waits{};  ///< whether surfels of the set that is prepared wait; none: none is
 };
 
 /// Decides what frames do besides showing the world as it is now: how many pixels they render, whether they
@@ -37,6 +37,8 @@ class FrameSchedule {
     [[nodiscard]] const SurfelTurn& turn() const { return turn_; }
     [[nodiscard]] const RefinementClock& refinement_clock() const { return refinement_clock_; }
     [[nodiscard]] const UpdateClock& update_clock() const { return update_clock_; }
+    /// Whether the guide of surfels stays: others have yet to be placed by it, or things move and it is new.
+    [[nodiscard]] bool guide_waits() const { return guide_waits_; }
 
     /// Ends the frame. Neither is called for a frame that throws.
     void complete(const FrameOutcome& outcome);
@@ -54,14 +56,15 @@ class FrameSchedule {
 
     /// Whether another frame of the same world would show the same.
     [[nodiscard]] bool settled() const {
-        return is_complete_ && !abandoned_ && !waits_ && !refines_ && quality_ == Quality{};
+        return is_complete_ && !abandoned_ && !waits() && !refines_ && quality_ == Quality{};
     }
-    /// Surfels that waited to be traced after the last complete frame.
-    [[nodiscard]] std::uint32_t waiting() const { return waiting_; }
+    /// Surfels that waited after the last complete frame.
+    [[nodiscard]] std::uint32_t waiting() const { return waiting_.now(); }
 
  private:
     using Clock = std::chrono::steady_clock;
 
+    [[nodiscard]] bool waits() const { return waiting_.any() || guide_waits_; }
     [[nodiscard]] bool has_moved(const World& world, std::vector<ViewRequest> views);
     [[nodiscard]] Quality choose(bool moved, double budget_ms);
     [[nodiscard]] SurfelTurn take_turn(bool rests);
@@ -71,15 +74,17 @@ class FrameSchedule {
     SurfelTurn turn_;
     RefinementClock refinement_clock_;
     UpdateClock update_clock_;
+    bool guide_waits_ = false;
+    std::uint32_t guide_age_ = 0;  // frames in which something has moved
 
     Tick last_revision_ = 0;  // the world's, in the last frame
     std::vector<ViewRequest> last_views_;
     Clock::time_point last_move_;
 
-    bool is_complete_ = false;   // the last frame; false if it threw, or if it is void
-    bool abandoned_ = false;     // the last frame was, and the next one goes on with it
-    std::uint32_t waiting_ = 0;  // FrameOutcome
-    bool waits_ = false;
+    bool is_complete_ = false;    // the last frame; false if it threw, or if it is void
+    bool abandoned_ = false;      // the last frame was, and the next one goes on with it
+    WaitingSurfels waiting_;      // FrameOutcome
+    bool asks_for_more_ = false;  // of what waits
     bool refines_ = false;
     Refinement refined_;            // the last frame's
     std::uint32_t turn_begin_ = 0;  // Refinement::set when its surfels took their turn; 0: before the mean

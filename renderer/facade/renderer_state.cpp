@@ -304,6 +304,7 @@ bool Renderer::State::render(const World& world, std::span<const RenderView> vie
     set_views(views);
     if (frame_.refinement_clock) runtime_.set(*frame_.refinement_clock, schedule_.refinement_clock());
     if (frame_.update_clock) runtime_.set(*frame_.update_clock, schedule_.update_clock());
+    if (frame_.guide_waits) runtime_.set(*frame_.guide_waits, schedule_.guide_waits());
     if (frame_.receivers) runtime_.set(*frame_.receivers, receivers_);
     if (frame_.epoch) runtime_.set(*frame_.epoch, epoch_);
     if (frame_.requests) runtime_.set(*frame_.requests, std::move(without_jitter));
@@ -334,11 +335,10 @@ bool Renderer::State::render(const World& world, std::span<const RenderView> vie
 
 FrameOutcome Renderer::State::outcome() const {
     const auto value = [this](const auto& handle) { return runtime_.value(*handle); };
-    FrameOutcome outcome{.refines = refines()};
+    FrameOutcome outcome{.has_guide = frame_.guide_waits.has_value(), .refines = refines()};
     if (frame_.waiting) outcome.waiting = value(frame_.waiting);
-    outcome.waits = outcome.waiting > 0 || (frame_.focus_state && value(frame_.focus_state).held);
     if (frame_.refinement) outcome.refinement = value(frame_.refinement);
-    if (frame_.waiting_of_next) outcome.waiting_of_next = value(frame_.waiting_of_next);
+    if (frame_.waiting_of_next) outcome.next_waits = value(frame_.waiting_of_next).any();
     return outcome;
 }
 

@@ -123,6 +123,7 @@ struct SurfelInputs {
     SurfelFoci foci;
     SurfelSources sources;
     std::optional<ValueHandle<UpdateClock>> update_clock;  ///< none: all is traced at once
+    std::optional<ValueHandle<bool>> guide_waits;          ///< with a clock: the guide stays in this frame
     std::optional<ValueHandle<SurfelGuide>> guide{};       ///< none: surfels are placed by area alone
 };
 
@@ -132,7 +133,7 @@ ValueHandle<SurfelGuide> add_guide(FrameGraph& graph, Gpu& gpu, const WantedVpls
                                    const SurfelInputs& inputs,
                                    ValueHandle<std::vector<ViewRequest>> requests) {
     graph.append_to_names(" (guide)");
-    graph.hold_passes(inputs.foci.holds_guide);
+    graph.hold_passes(inputs.guide_waits);
     VplSettings settings = wanted.settings;
     settings.count = guiding_surfels(settings.count);
     settings.seed = 0;  // all sets have the same guide
@@ -156,18 +157,19 @@ SurfelInputs add_surfel_inputs(FrameGraph& graph, Gpu& gpu, const WantedVpls& wa
                                std::optional<ValueHandle<Refinement>> refinement, FrameHandles& frame) {
     frame.epoch = graph.import_value<std::uint64_t>("scene epoch");
     frame.requests = graph.import_value<std::vector<ViewRequest>>("view requests");
-    if (wanted.settings.updates > 0) frame.update_clock = graph.import_value<UpdateClock>("update clock");
+    if (wanted.settings.updates > 0) {
+        frame.update_clock = graph.import_value<UpdateClock>("update clock");
+        if (wanted.guided) frame.guide_waits = graph.import_value<bool>("whether the guide waits");
+    }
     SurfelInputs inputs{
         .motion = add_scene_motion(graph, lit.scene, *frame.epoch),
-        .foci = add_surfel_focus(
-            graph, lit.scene, lit.tracing, *frame.requests, wanted.settings.count,
-            {frame.update_clock, wanted.guided ? std::optional(lit.lights.table) : std::nullopt}),
+        .foci = add_surfel_focus(graph, lit.scene, lit.tracing, *frame.requests, wanted.settings.count),
         .sources = {.lights = lit.lights,
                     .emitters = wanted.emitters,
                     .sky = {},
                     .balanced = wanted.balanced},
-        .update_clock = frame.update_clock};
-    frame.focus_state = inputs.foci.state;
+        .update_clock = frame.update_clock,
+        .guide_waits = frame.guide_waits};
     if (lit.sky) inputs.sources.sky = add_sky_patches(graph, gpu, *lit.sky, refinement);
     if (wanted.guided) inputs.guide = add_guide(graph, gpu, wanted, lit, inputs, *frame.requests);
     return inputs;
@@ -177,7 +179,7 @@ SurfelInputs add_surfel_inputs(FrameGraph& graph, Gpu& gpu, const WantedVpls& wa
 struct TracedSet {
     SurfelVisibility visibility;
     MappedVpls mapped;
-    std::optional<ValueHandle<std::uint32_t>> waiting;  ///< SurfelUpdates::waiting
+    std::optional<ValueHandle<WaitingSurfels>> waiting;  ///< SurfelUpdates::waiting
 };
 
 /// What is declared from now on belongs to the set in that place, also in graphs in which it has another
@@ -192,15 +194,16 @@ void end_place(FrameGraph& graph) {
 
 TracedSet add_traced_set(FrameGraph& graph, Gpu& gpu, const WantedVpls& wanted, const LitScene& lit,
                          const SurfelSetChoice& set, const SurfelInputs& inputs) {
+    const auto clock = wanted.settings.updates > 0 ? inputs.update_clock : std::nullopt;
     begin_place(graph, set.place);
     const ValueHandle<SpreadSurfels> spread =
-        add_surfel_spread(graph, lit.scene, set, {inputs.foci.foci, inputs.guide}, wanted.settings);
+        add_surfel_spread(graph, lit.scene, set, {inputs.foci.foci, inputs.guide, clock}, wanted.settings);
     const Surfels surfels = add_surfels(graph, gpu, lit.scene, lit.tracing, inputs.motion, spread,
                                         inputs.foci.of_maps, wanted.settings.count);
     std::optional<SurfelUpdates> updates;
-    if (inputs.update_clock && wanted.settings.updates > 0) {
-        updates = add_surfel_updates(graph, surfels, lit.tracing, inputs.motion, inputs.foci, set,
-                                     *inputs.update_clock);
+    if (clock) {
+        updates =
+            add_surfel_updates(graph, spread, surfels, lit.tracing, inputs.motion, inputs.foci, set, *clock);
     }
     const auto tasks = updates ? std::optional(updates->tasks) : std::nullopt;
     const SurfelVisibility visibility =
@@ -216,7 +219,7 @@ TracedSet add_traced_set(FrameGraph& graph, Gpu& gpu, const WantedVpls& wanted, 
 struct VplSet {
     Vpls vpls;
     MappedVpls mapped;
-    std::optional<ValueHandle<std::uint32_t>> waiting;  ///< as in TracedSet
+    std::optional<ValueHandle<WaitingSurfels>> waiting;  ///< as in TracedSet
 };
 
 VplSet add_surfel_set(FrameGraph& graph, Gpu& gpu, const WantedVpls& wanted, const LitScene& lit,
@@ -262,10 +265,10 @@ MappedSet add_mapped_set(FrameGraph& graph, Gpu& gpu, const LitScene& lit,
 }
 
 /// Makes a part of the next set of surfels. Nothing in the frame reads it.
-ValueHandle<std::uint32_t> prepare_next_set(FrameGraph& graph, Gpu& gpu, const WantedVpls& wanted,
-                                            const LitScene& lit, const SurfelSetChoice& choice,
-                                            const SurfelInputs& inputs,
-                                            const VplVisibilitySettings& visibility) {
+ValueHandle<WaitingSurfels> prepare_next_set(FrameGraph& graph, Gpu& gpu, const WantedVpls& wanted,
+                                             const LitScene& lit, const SurfelSetChoice& choice,
+                                             const SurfelInputs& inputs,
+                                             const VplVisibilitySettings& visibility) {
     graph.append_to_names(" (next set)");
     const TracedSet set = add_traced_set(graph, gpu, wanted, lit, choice, inputs);
     const MappedSet mapped =

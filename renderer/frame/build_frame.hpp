@@ -50,10 +50,10 @@ struct FrameHandles {
     std::optional<ValueHandle<std::vector<ViewRequest>>> requests;
     std::optional<Vpls> vpls;                              ///< none without indirect light
     std::optional<ValueHandle<UpdateClock>> update_clock;  ///< imported; none without VplSettings::updates
-    std::optional<ValueHandle<std::uint32_t>> waiting;     ///< SurfelUpdates::waiting, likewise
+    std::optional<ValueHandle<bool>> guide_waits;  ///< imported: SurfelGuide stays in this frame; likewise
+    std::optional<ValueHandle<WaitingSurfels>> waiting;  ///< SurfelUpdates::waiting, likewise
     /// The same of the set that is prepared; none if none is.
-    std::optional<ValueHandle<std::uint32_t>> waiting_of_next;
-    std::optional<ValueHandle<FocusState>> focus_state;            ///< SurfelFoci::state, likewise
+    std::optional<ValueHandle<WaitingSurfels>> waiting_of_next;
     std::optional<ValueHandle<RefinementClock>> refinement_clock;  ///< imported; none without refinement
     std::optional<ValueHandle<Refinement>> refinement;             ///< likewise
     /// Imported: Renderer::set_receivers; none if there are none.

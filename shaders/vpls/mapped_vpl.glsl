@@ -10,21 +10,23 @@ struct MappedVpl {
     uint map;       // see vpl_atlas.glsl
 };
 
+struct MapTask {
+    uint index;
+    uint task;  // SURFEL_*
+};
+
 #ifdef SURFELS
 
 layout(std430, binding = BINDING_SURFELS) readonly restrict buffer Surfels { Surfel surfels[]; };
-// By surfel: SURFEL_CHANGED and the like.
-layout(std430, binding = BINDING_MAP_TASKS) readonly restrict buffer MapTasks { uint map_tasks[]; };
-
-uniform bool has_tasks;  // else all is drawn
+// Index of a surfel or of a freed slot, and what is to be drawn there: SURFEL_CHANGED and the like.
+layout(std430, binding = BINDING_MAP_TASKS) readonly restrict buffer MapTasks { uvec2 map_tasks[]; };
 
 bool is_freed(uint index) { return index >= vpl_constants.mapped; }
 
 // All but those on deformed triangles without area, and freed slots.
 bool has_map(uint index) { return !is_freed(index) && surfels[index].normal != vec3(0.0); }
 
-// What is to be drawn in the slot. If everything may have changed, all is drawn but where nothing is to be.
-uint map_task(uint index) { return is_freed(index) || !has_tasks ? SURFEL_WHOLE : map_tasks[index]; }
+MapTask map_task(uint turn) { return MapTask(map_tasks[turn].x, map_tasks[turn].y); }
 
 MappedVpl mapped_vpl(uint index) {
     if (is_freed(index)) return MappedVpl(vec3(0.0), vec3(0.0), index);
@@ -37,7 +39,7 @@ layout(std430, binding = BINDING_TRACED_VPLS) readonly restrict buffer TracedVpl
 
 bool has_map(uint index) { return traced_vpls[index].state == VPL_PLACED; }
 
-uint map_task(uint index) { return SURFEL_WHOLE; }
+MapTask map_task(uint turn) { return MapTask(turn, SURFEL_WHOLE); }
 
 MappedVpl mapped_vpl(uint index) { return MappedVpl(traced_vpls[index].position, traced_vpls[index].normal, index); }
 

@@ -1,5 +1,5 @@
 // Maps of what VPLs see: traces a ray through the centre of each texel and stores the plane that it meets. Slots without a
-// map are cleared. One work group per block of MAP_BLOCK² texels, z: VPL or freed slot; one invocation per texel.
+// map are cleared. One work group per block of MAP_BLOCK² texels, z: task; one invocation per texel.
 #include "maths.glsl"
 #include "scene/bvh.glsl"
 #include "scene/changed_boxes.glsl"
@@ -11,21 +11,18 @@ layout(local_size_x = MAP_BLOCK, local_size_y = MAP_BLOCK) in;
 layout(r32f, binding = IMAGE_VPL_MAPS) writeonly restrict uniform image2DArray vpl_maps;
 layout(r32ui, binding = IMAGE_VPL_SLOPES) writeonly restrict uniform uimage2DArray vpl_slopes;
 
-uniform uint first_vpl;
+uniform uint first_task;
 
-bool is_outdated(uint index, MappedVpl vpl) {
-    uint task = map_task(index);
-    if ((task & SURFEL_NO_MAP) != 0u) return false;
-    if (everything_changed) return has_map(index);  // the atlas is cleared
-    if ((task & SURFEL_WHOLE) != 0u) return true;
-    if ((task & SURFEL_CHANGED) == 0u) return false;
+bool is_outdated(MapTask task, MappedVpl vpl) {
+    if (everything_changed) return has_map(task.index);  // the atlas is cleared
+    if (task.task == SURFEL_WHOLE) return true;
     bool sees_above = (vpl.map & SURFEL_MAP_OF_FOCUS) == 0u;
-    return has_map(index) && (!sees_above || may_have_changed_above(vpl.position, vpl.normal));
+    return has_map(task.index) && (!sees_above || may_have_changed_above(vpl.position, vpl.normal));
 }
 
 // Whether the ray of a texel may meet something else than before.
-bool is_outdated_along(uint index, vec3 origin, vec3 direction) {
-    return everything_changed || (map_task(index) & SURFEL_WHOLE) != 0u || may_have_changed(origin, direction, INFINITY);
+bool is_outdated_along(MapTask task, vec3 origin, vec3 direction) {
+    return task.task == SURFEL_WHOLE || may_have_changed(origin, direction, INFINITY);
 }
 
 // Normal of the triangle, on the side that the ray meets.
@@ -48,13 +45,13 @@ void store(ivec3 at, float depth, uint slope) {
 }
 
 void main() {
-    uint index = first_vpl + gl_WorkGroupID.z;
-    MappedVpl vpl = mapped_vpl(index);
+    MapTask task = map_task(first_task + gl_WorkGroupID.z);
+    MappedVpl vpl = mapped_vpl(task.index);
     uvec2 texel = own_texel();
-    if (max(texel.x, texel.y) >= vpl_constants.map_resolution || !is_outdated(index, vpl)) return;
+    if (max(texel.x, texel.y) >= vpl_constants.map_resolution || !is_outdated(task, vpl)) return;
     VplTile tile = vpl_tile(vpl.map);
     ivec3 at = ivec3(tile.corner + texel, tile.layer);
-    if (!has_map(index)) {
+    if (!has_map(task.index)) {
         store(at, 0.0, 0u);
         return;
     }
@@ -63,7 +60,7 @@ void main() {
     vec3 origin = vpl_map_origin(vpl.position, vpl.normal);
     vec3 local = normalize(point);
     vec3 direction = local * frame.map_from_world;
-    if (!is_outdated_along(index, origin, direction)) return;
+    if (!is_outdated_along(task, origin, direction)) return;
     Hit hit = closest_hit(origin, direction, 0.0, INFINITY);
     if (hit.triangle == NO_TRIANGLE) {
         store(at, 0.0, 0u);

@@ -213,6 +213,15 @@ TEST_CASE("graph error: wrong usage and wrong format are named") {
                        "pass 'draw' writes texture 'albedo' as depth target, but its format is rgba16f"});
 }
 
+TEST_CASE("graph error: passes held by what no host sets") {
+    FrameGraph graph;
+    graph.hold_passes(graph.value<bool>("own"));
+    const std::vector<CompileError> errors = errors_of(graph);
+    REQUIRE(errors.size() == 1);
+    CHECK(errors[0] ==
+          CompileError{ErrorCode::wrong_usage, "passes are held by value 'own', which is not imported"});
+}
+
 TEST_CASE("graph error: a pass reads what it overwrites, in either order of declaration") {
     for (const bool read_first : {true, false}) {
         FrameGraph graph;

@@ -481,7 +481,6 @@ TEST_CASE_FIXTURE(GraphFixture,
     int shown = 0;
     graph.add("show", [&](Pass& pass) {
         pass.side_effect();
-        pass.read(held);
         pass.read(power);
         pass.read(negated);
         pass.run([=, &shown](Execution& run) { shown = run.value(negated); });

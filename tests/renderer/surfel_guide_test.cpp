@@ -121,8 +121,9 @@ TEST_CASE_FIXTURE(GuideTests, "a light that moves for long does not keep the gui
         static_cast<void>(render(scene, size));
         if (ran("surfel-guide (guide)")) ++runs;
     }
-    // After 16 frames each.
-    CHECK(runs == 2);
+    // Every 8th frame, or later, once surfels are placed by the last one: 64 of 512 are traced in a frame.
+    CHECK(runs >= 2);
+    CHECK(runs <= 4);
 }
 
 }  // TEST_SUITE("surfels: guide")

@@ -57,6 +57,40 @@ SurfelSet placed(const SceneTriangles& scene, const SurfelCounts& counts, std::u
     return SurfelPlacement(scene, seed).place(counts, foci);
 }
 
+/// From -1 to 1 along x and y.
+SceneTriangles square() {
+    SceneTriangles scene{.triangles = {}, .item_of = {}, .double_sided = {false}, .emits = {false}};
+    add_parallelogram(scene, 0, {-1, -1, 0}, {2, 0, 0}, {0, 2, 0});
+    return scene;
+}
+
+/// 64 x 64 points of the square, of which the left ones have all shares: this part of them.
+std::vector<GuidePoint> guide_of(float part) {
+    std::vector<GuidePoint> guide;
+    constexpr int side = 64;
+    for (int i = 0; i < side * side; ++i) {
+        const glm::vec2 at = (glm::vec2(i % side, i / side) + 0.5F) / static_cast<float>(side);
+        const bool first = at.x + at.y < 1.0F;  // triangle 0 has the corner at -1, -1
+        guide.push_back({.place = {.triangle = first ? 0U : 1U, .weights = first ? at : 1.0F - at},
+                         .area = 4.0F / (side * side),
+                         .share = at.x < part ? 3.0F : 0.0F});
+    }
+    return guide;
+}
+
+/// How many of the surfels are not in the other set.
+std::size_t new_surfels(const SurfelSet& set, const SurfelSet& before) {
+    const std::set<std::uint64_t> known(before.ids.begin(), before.ids.end());
+    return static_cast<std::size_t>(
+        std::ranges::count_if(set.ids, [&](std::uint64_t id) { return !known.contains(id); }));
+}
+
+/// Of those on the left half of the square.
+std::ptrdiff_t left_surfels(const SurfelSet& set) {
+    return std::ranges::count_if(set.surfels,
+                                 [](const gpu::Surfel& surfel) { return surfel.position.x < 0.0F; });
+}
+
 double total_area(const SurfelSet& set) {
     double area = 0.0;
     for (const gpu::Surfel& surfel : set.surfels) area += static_cast<double>(surfel.area);
@@ -157,21 +191,9 @@ TEST_CASE("surfels are dense in a focus, less so beyond it, and cover all of the
 }
 
 TEST_CASE("surfels are dense where a guide says that light comes from, and the rest has a part by area") {
-    SceneTriangles plane{.triangles = {}, .item_of = {}, .double_sided = {false}, .emits = {false}};
-    add_parallelogram(plane, 0, {-1, -1, 0}, {2, 0, 0}, {0, 2, 0});
-    // 64 x 64 points, of which those with x < 0 have all shares. Triangle 0 has the corner at -1, -1.
-    std::vector<GuidePoint> guide;
-    constexpr int side = 64;
-    for (int i = 0; i < side * side; ++i) {
-        const glm::vec2 at = (glm::vec2(i % side, i / side) + 0.5F) / static_cast<float>(side);
-        const bool first = at.x + at.y < 1.0F;
-        guide.push_back({.place = {.triangle = first ? 0U : 1U, .weights = first ? at : 1.0F - at},
-                         .area = 4.0F / (side * side),
-                         .share = at.x < 0.5F ? 3.0F : 0.0F});
-    }
-    const SurfelSet set = SurfelPlacement(plane, test_seed()).place({.reflecting = 480}, {}, guide);
-    const auto left = std::ranges::count_if(
-        set.surfels, [](const gpu::Surfel& surfel) { return surfel.position.x < 0.0F; });
+    const SurfelSet set =
+        SurfelPlacement(square(), test_seed()).place({.reflecting = 480}, {}, guide_of(0.5F));
+    const std::ptrdiff_t left = left_surfels(set);
     // Light counts 1 and area 0.2, of which the right half has half: 0.1 of 1.2. The worth of cells, of which
     // the most is cut, varies by a factor of 4, more than its mean does.
     const double share_right = 1.0 - static_cast<double>(left) / static_cast<double>(set.surfels.size());
@@ -204,15 +226,83 @@ TEST_CASE("most surfels stay where a focus moves a little, and where it was befo
         CHECK(std::ranges::equal(set.points, fresh.points, {}, &gpu::CellPoint::position,
                                  &gpu::CellPoint::position));
         if (x > 0.0F && x < 1.0F) {
-            const std::set<std::uint64_t> known(before.ids.begin(), before.ids.end());
-            const auto stay =
-                std::ranges::count_if(set.ids, [&](std::uint64_t id) { return known.contains(id); });
+            const std::size_t stay = set.ids.size() - new_surfels(set, before);
             // A step of 6 % of the radius changes the density by at most 3 · 6 %, and a cell is cut for
             // an eighth of an octave at most, of the one in which it may be.
             CHECK(static_cast<double>(stay) > 0.7 * static_cast<double>(set.ids.size()));
         }
         before = set;
     }
+}
+
+TEST_CASE("a set that follows changes by no more cells than it may, first where most light comes from") {
+    constexpr std::uint32_t most_new = 12;
+    const SurfelCounts counts{.reflecting = 200};
+    SurfelPlacement placement(square(), test_seed());
+    SurfelSet set = placement.place(counts);
+    const std::vector<GuidePoint> guide = guide_of(0.5F);
+    const SurfelSet wanted = SurfelPlacement(square(), test_seed()).place(counts, {}, guide);
+    const std::ptrdiff_t begin = left_surfels(set), end = left_surfels(wanted);
+    const std::size_t to_change = new_surfels(wanted, set);
+    REQUIRE(to_change > 8 * most_new);
+    std::size_t steps = 0;
+    do {
+        const SurfelSet before = set;
+        set = placement.place(counts, {}, guide, {&before.cut, most_new});
+        REQUIRE(++steps < 1000);
+        CHECK(set.surfels.size() <= counts.reflecting);
+        CHECK(total_area(set) == doctest::Approx(4.0).epsilon(1e-4));
+        // A patch that is opened gives two cells.
+        CHECK(new_surfels(set, before) <= most_new + 1);
+        // A third of the cells that are replaced are the closed ones, of little light.
+        if (steps == 1) CHECK(left_surfels(set) > begin);
+    } while (set.left.all > 0);
+    CHECK(left_surfels(set) == end);
+    CHECK(set.ids == wanted.ids);
+    // Each step has its number of them; cells on the way to those that are wanted cost no more than as many.
+    CHECK(steps <= 2 * (to_change / most_new + 1));
+}
+
+TEST_CASE("a set that follows only what is worth it stays where others are worth little more") {
+    const SurfelCounts counts{.reflecting = 200};
+    SurfelPlacement placement(square(), test_seed());
+    const SurfelSet before = placement.place(counts, {}, guide_of(0.5F));
+    const LastCut worth_double{.cut = &before.cut, .most_new = 200, .gain = 2.0};
+    // A 32nd more of the square has light: a 16th of what had it.
+    const SurfelSet nearly = placement.place(counts, {}, guide_of(0.53125F), worth_double);
+    const SurfelSet at_once = placement.place(counts, {}, guide_of(0.53125F));
+    CHECK(new_surfels(at_once, before) > 0);
+    CHECK(2 * new_surfels(nearly, before) < new_surfels(at_once, before));
+    CHECK(nearly.left.all > 0);
+    CHECK(nearly.left.gains == 0);
+    // All light elsewhere. What is worth less than double is halves of a cell: of those that are wanted there
+    // are at least about half.
+    std::vector<GuidePoint> right = guide_of(0.5F);
+    for (GuidePoint& point : right) point.share = 3.0F - point.share;
+    const SurfelSet moved = placement.place(counts, {}, right, worth_double);
+    const auto right_of = [](const SurfelSet& set) { return std::ssize(set.surfels) - left_surfels(set); };
+    CHECK(right_of(moved) > 0.45 * static_cast<double>(right_of(placement.place(counts, {}, right))));
+    CHECK(right_of(moved) > 2 * right_of(before));
+}
+
+TEST_CASE("where items come and go, a set that follows keeps the cells of the others") {
+    SceneTriangles one = square();
+    SceneTriangles two = square();
+    add_parallelogram(two, 1, {9, -1, 0}, {2, 0, 0}, {0, 2, 0});
+    const SurfelCounts counts{.reflecting = 64};
+    const SurfelSet before = placed(one, counts, test_seed());
+    SurfelPlacement placement(two, test_seed());
+    SurfelSet set = placement.place(counts, {}, {}, {&before.cut, 8});
+    CHECK(new_surfels(set, before) <= 9);
+    CHECK(total_area(set) == doctest::Approx(8.0).epsilon(1e-4));
+    for (int step = 0; set.left.all > 0; ++step) {
+        REQUIRE(step < 100);
+        const PatchCut last = set.cut;
+        set = placement.place(counts, {}, {}, {&last, 8});
+    }
+    CHECK(set.ids == placed(two, counts, test_seed()).ids);
+    const SurfelSet again = SurfelPlacement(one, test_seed()).place(counts, {}, {}, {&set.cut, 64});
+    CHECK(again.ids == before.ids);
 }
 
 TEST_CASE("of many items some have surfels, which stand for all") {

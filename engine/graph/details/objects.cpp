@@ -87,15 +87,20 @@ class Objects {
 void plan_objects(const Declaration& declared, Plan& plan) {
     plan.lifetime.assign(declared.resources.size(), {});
     for (std::uint32_t position = 0; position < plan.order.size(); ++position) {
-        for (const Access& access : declared.accesses_of(plan.order[position])) {
-            Span& span = plan.lifetime[access.resource];
+        const auto use = [&](std::uint32_t resource) {
+            Span& span = plan.lifetime[resource];
             if (span.first == none) span.first = position;
             span.last = position;
-        }
+        };
+        const std::uint32_t held_by = declared.passes[plan.order[position]].held_by;
+        if (held_by != none) use(held_by);
+        for (const Access& access : declared.accesses_of(plan.order[position])) use(access.resource);
     }
     plan.object.assign(declared.resources.size(), none);
     Objects objects(declared, plan);
     for (std::uint32_t position = 0; position < plan.order.size(); ++position) {
+        const std::uint32_t held_by = declared.passes[plan.order[position]].held_by;
+        if (held_by != none) objects.give(held_by);
         const auto accesses = declared.accesses_of(plan.order[position]);
         for (const Access& access : accesses) {
             objects.give(access.resource);

@@ -55,7 +55,8 @@ struct VplReport {
     std::uint32_t alive = 0;      ///< VPLs with a flux above zero
     std::uint32_t paths = 0;      ///< light paths; 0 with surfels
     std::uint32_t rays = 0;       ///< path segments, including those that hit nothing; 0 with surfels
-    /// Surfels whose shadows are out of date, and are traced in the next frames: VplSettings::updates
+    /// Surfels whose shadows are out of date, or in whose place there should be others, which follows in the
+    /// next frames: VplSettings::updates
     std::uint32_t waiting = 0;
     std::uint32_t interleave = 1;  ///< n: a pixel evaluates one in n² VPLs
     /// Pixels that evaluated additional VPLs, because too few neighbours lie on the same surface.

@@ -101,50 +101,11 @@ std::vector<Focus> foci_of(const std::vector<CameraView>& views, const std::vect
     return foci;
 }
 
-/// Since when the guide stays.
-struct GuideAge {
-    std::vector<CameraView> views;  // that it is of
-    std::uint32_t moves = 0;        // frames in which something has moved since
-    bool held = false;
-    bool operator==(const GuideAge&) const = default;
-};
-
-/// The foci of the last frame, and what they were found for.
-struct FocusRecord {
-    std::vector<Focus> foci;
-    std::vector<CameraView> views;
-    std::uint32_t count = 0;
-    GuideAge guide;
-    bool operator==(const FocusRecord&) const = default;
-};
-
-/// Whether a view shows much that another does not. `distance`: of what it sees.
-bool differs_much(const CameraView& view, const CameraView& other, float distance) {
-    constexpr float cosine_of_little = 0.966F;  // of 15°
-    return glm::distance(view.eye, other.eye) > distance / 8.0F ||
-           glm::dot(forward_of(view), forward_of(other)) < cosine_of_little;
-}
-
-/// The age of the guide in this frame. `moves`: something does, a view or a light included.
-GuideAge guide_age(const GuideAge& last, const std::vector<CameraView>& views,
-                   const std::vector<float>& distances, bool moves, bool waits) {
-    constexpr std::uint32_t most_moves = 16;
-    GuideAge age{.views = last.views, .moves = last.moves + (moves ? 1U : 0U), .held = moves || waits};
-    if (last.views.size() != views.size() || age.moves > most_moves) age.held = false;
-    for (std::size_t i = 0; age.held && i < views.size(); ++i) {
-        age.held = !differs_much(views[i], last.views[i], distances[i]);
-    }
-    if (!age.held) age = {.views = views, .moves = 0, .held = false};
-    return age;
-}
-
 /// Resources of the node.
 struct FocusNode {
     SceneData scene;
     Tracing tracing;
     ValueHandle<std::vector<ViewRequest>> requests;
-    FocusClock clock;
-    std::optional<ValueHandle<FocusRecord>> record;  // with a clock
     SurfelFoci out;
 };
 
@@ -152,37 +113,14 @@ void find_foci(Execution& run, const FocusNode& node, std::uint32_t count) {
     const TracedScene traced{*run.value(node.tracing.hierarchy), run.value(node.scene.layout),
                              run.value(node.scene.placement)};
     const SceneMetrics& metrics = run.value(node.tracing.metrics);
-    FocusRecord now{.foci = {},
-                    .views = requested_views(run.world(), run.value(node.requests)),
-                    .count = count,
-                    .guide = {}};
+    const std::vector<CameraView> views = requested_views(run.world(), run.value(node.requests));
     std::vector<float> distances;
-    for (const CameraView& view : now.views) {
+    for (const CameraView& view : views) {
         distances.push_back(view_distance(view, traced, metrics.ray_offset()));
     }
-    const FocusRecord* const last = node.record ? run.previous(*node.record) : nullptr;
-    const bool same_views = last != nullptr && last->views == now.views && last->count == count;
-    const bool moves = run.changed(node.scene.placement) || run.changed(node.scene.layout);
-    const bool waits = last != nullptr && run.value(*node.clock.updates).waits;
-    const bool holds = same_views && (moves || waits);
-    const std::vector<Focus> wanted = foci_of(now.views, distances, metrics.area, count);
-    const bool differ = same_views && wanted != last->foci;
-    now.foci = holds ? last->foci : wanted;
-    run.set(node.out.of_maps, focus_of_maps(now.foci));
-    run.set(node.out.foci, now.foci);
-    if (!node.record) return;
-    const bool same_light = !node.clock.lights || !run.changed(*node.clock.lights);
-    // A limit that the surfels do not reach changes nothing.
-    const bool is_limited = node.clock.lights && run.value(*node.clock.updates).limit < count;
-    const bool anything_moves = moves || !same_views || !same_light;
-    now.guide = guide_age(last != nullptr ? last->guide : GuideAge{}, now.views, distances,
-                          is_limited && anything_moves, is_limited && waits);
-    const bool was_held = last != nullptr && last->guide.held;
-    run.set(*node.out.holds_guide, bool{now.guide.held});
-    run.set(*node.out.state,
-            {.held = (differ && holds) || now.guide.held,
-             .renewed = same_views && ((differ && !holds) || (was_held && !now.guide.held))});
-    run.set(*node.record, std::move(now));
+    std::vector<Focus> foci = foci_of(views, distances, metrics.area, count);
+    run.set(node.out.of_maps, focus_of_maps(foci));
+    run.set(node.out.foci, std::move(foci));
 }
 
 }  // namespace
@@ -218,8 +156,7 @@ float density_at(std::span<const Focus> foci, const glm::vec3& place) {
 }
 
 SurfelFoci add_surfel_focus(FrameGraph& graph, const SceneData& scene, const Tracing& tracing,
-                            ValueHandle<std::vector<ViewRequest>> requests, std::uint32_t count,
-                            const FocusClock& clock) {
+                            ValueHandle<std::vector<ViewRequest>> requests, std::uint32_t count) {
     return graph.add("surfel-focus", [&](Pass& pass) {
         pass.read(scene.layout);
         pass.read(scene.placement);
@@ -227,22 +164,11 @@ SurfelFoci add_surfel_focus(FrameGraph& graph, const SceneData& scene, const Tra
         pass.read(tracing.metrics);
         read_requests(pass, requests);
         pass.parameter(count);
-        FocusNode node{.scene = scene,
-                       .tracing = tracing,
-                       .requests = requests,
-                       .clock = clock,
-                       .record = {},
-                       .out = {}};
-        node.out.of_maps = pass.write(graph.value<Focus>("focus of maps"));
-        if (clock.updates) {
-            pass.keeps_state();
-            pass.read(*clock.updates);
-            if (clock.lights) pass.read(*clock.lights);
-            node.out.state = pass.write(graph.value<FocusState>("state of foci"));
-            node.out.holds_guide = pass.write(graph.value<bool>("whether the guide stays"));
-            node.record = pass.update(graph.value<FocusRecord>("last foci"));
-        }
-        node.out.foci = pass.write(graph.value<std::vector<Focus>>("surfel foci"));
+        const FocusNode node{.scene = scene,
+                             .tracing = tracing,
+                             .requests = requests,
+                             .out = {.foci = pass.write(graph.value<std::vector<Focus>>("surfel foci")),
+                                     .of_maps = pass.write(graph.value<Focus>("focus of maps"))}};
         pass.run([=](Execution& run) { find_foci(run, node, count); });
         return node.out;
     });

@@ -201,39 +201,70 @@ void SurfelPlacement::split(std::vector<Cell>& cells, std::size_t index,
 /// Cuts cells, always the one of the greatest weight, until there are `count`.
 template <class Weight>
 std::vector<SurfelPlacement::Cell> SurfelPlacement::cut(std::vector<Cell> cells, std::uint32_t count,
-                                                        const Weight& weight,
-                                                        std::span<const GuidePoint> guide) {
+                                                        const Weight& weight, const Cutting& cutting) {
     // The id makes the order of equal weights independent of the tree's.
     using Entry = std::tuple<double, std::uint64_t, std::size_t>;
     std::priority_queue<Entry> next;
-    const auto queue = [&](std::size_t i) { next.emplace(weight(cells[i]), tree_[cells[i].patch].id, i); };
+    const auto queue = [&](std::size_t i) {
+        const std::uint64_t id = tree_[cells[i].patch].id;
+        const double heaviness = weight(cells[i]);
+        if (cutting.record != nullptr) cutting.record->places[id] = {.weight = heaviness};
+        if (cutting.within == nullptr || cutting.within->opens(id)) next.emplace(heaviness, id, i);
+    };
     for (std::size_t i = 0; i < cells.size(); ++i) queue(i);
     while (cells.size() < count && !next.empty()) {
         const std::size_t i = std::get<2>(next.top());
         next.pop();
-        if (!tree_.cut(cells[i].patch)) continue;
-        split(cells, i, guide);
+        const std::uint32_t patch = cells[i].patch;
+        if (!tree_.cut(patch)) continue;
+        if (cutting.record != nullptr) cutting.record->places[tree_[patch].id].opened = true;
+        split(cells, i, cutting.guide);
         queue(i);
         queue(cells.size() - 1);
     }
     return cells;
 }
 
-std::vector<SurfelPlacement::Cell> SurfelPlacement::cells_on(const std::vector<Root>& roots,
-                                                             std::uint32_t count, const Weights& weights) {
-    if (count == 0 || roots.empty()) return {};
-    std::vector<Cell> cells =
-        shares_items(roots.size(), count) ? share_items(roots, count, weights) : whole_items(roots, weights);
+/// Cuts items into `count` cells. `within`: null: wherever the weight is greatest.
+SurfelPlacement::CutCells SurfelPlacement::cells_of(std::vector<Cell> whole, std::uint32_t count,
+                                                    const Weights& weights, const PatchCut* within) {
+    CutCells of;
+    for (const Cell& item : whole) of.cut.scales.emplace(tree_[item.patch].id, item.scale);
     // Patches of equal size are not all cut at once: that would leave large areas of cells of twice the size.
     const auto weight = [&](const Cell& cell) {
         return weight_of(cell, weights) * std::exp2(random_of(tree_[cell.patch].id, use_weight));
     };
-    cells = cut(std::move(cells), std::min(count, most_branches), weight, weights.guide);
-    for (std::uint32_t i = 0; i < cells.size(); ++i) cells[i].branch = i;
-    if (count <= most_branches) return cells;
-    cells = cut(std::move(cells), count, weight, weights.guide);
-    std::ranges::stable_sort(cells, {}, &Cell::branch);
-    return cells;
+    const Cutting cutting{.guide = weights.guide, .within = within, .record = &of.cut};
+    of.cells = cut(std::move(whole), std::min(count, most_branches), weight, cutting);
+    for (std::uint32_t i = 0; i < of.cells.size(); ++i) of.cells[i].branch = i;
+    if (count <= most_branches) return of;
+    of.cells = cut(std::move(of.cells), count, weight, cutting);
+    std::ranges::stable_sort(of.cells, {}, &Cell::branch);
+    return of;
+}
+
+SurfelPlacement::CutCells SurfelPlacement::cells_on(const std::vector<Root>& roots, std::uint32_t count,
+                                                    const Weights& weights, const LastCut& last) {
+    if (count == 0 || roots.empty()) return {};
+    const std::vector<Cell> all = whole_items(roots, weights);
+    CutCells wanted = cells_of(shares_items(roots.size(), count) ? share_items(roots, count, weights) : all,
+                               count, weights, nullptr);
+    if (last.cut == nullptr) return wanted;
+    std::vector<std::uint32_t> patches;
+    for (const Root& root : roots) patches.push_back(root.patch);
+    const FollowedCut followed =
+        follow(tree_, patches, {*last.cut, wanted.cut}, {count, last.most_new, last.gain});
+    if (followed.left.all == 0) return wanted;
+    std::vector<Cell> whole;
+    for (const Cell& item : all) {
+        const auto found = followed.cut.scales.find(tree_[item.patch].id);
+        if (found == followed.cut.scales.end()) continue;
+        whole.push_back(item);
+        whole.back().scale = found->second;
+    }
+    CutCells of = cells_of(std::move(whole), count, weights, &followed.cut);
+    of.left = followed.left;
+    return of;
 }
 
 /// Appends the surfel of a cell.
@@ -276,17 +307,20 @@ void SurfelPlacement::append(SurfelSet& set, const Cell& cell, std::uint32_t poi
 }
 
 SurfelSet SurfelPlacement::place(const SurfelCounts& counts, std::span<const std::vector<Focus>> foci,
-                                 std::span<const GuidePoint> guide) {
+                                 std::span<const GuidePoint> guide, const LastCut& last) {
     if (tree_.size() > scene_.triangles.size() +
                            std::size_t{most_patches_a_surfel} * (counts.reflecting + counts.emitting)) {
         plant();
     }
     SurfelSet set;
-    for (const Cell& cell : cells_on(reflecting_, counts.reflecting, weights_of(foci, guide)))
-        append(set, cell, points_a_surfel);
+    const auto append_all = [&](CutCells of, std::uint32_t points) {
+        for (const Cell& cell : of.cells) append(set, cell, points);
+        set.cut.merge(std::move(of.cut));
+        set.left += of.left;
+    };
+    append_all(cells_on(reflecting_, counts.reflecting, weights_of(foci, guide), last), points_a_surfel);
     const std::size_t reflecting = set.surfels.size();
-    for (const Cell& cell : cells_on(emitting_, counts.emitting, weights_of(foci, {})))
-        append(set, cell, points_an_emitter);
+    append_all(cells_on(emitting_, counts.emitting, weights_of(foci, {}), last), points_an_emitter);
     set.emitting_count = static_cast<std::uint32_t>(set.surfels.size() - reflecting);
     return set;
 }

@@ -10,6 +10,7 @@
 #include <vector>
 
 #include "renderer/gpu/gpu_types.hpp"
+#include "renderer/passes/surfels/patch_cut.hpp"
 #include "renderer/passes/surfels/patch_tree.hpp"
 #include "renderer/passes/surfels/surfel_focus.hpp"
 
@@ -29,6 +30,8 @@ struct SurfelSet {
     std::vector<SurfacePoint> surfel_places;
     std::vector<SurfacePoint> point_places;
     std::uint32_t emitting_count = 0;  ///< surfels that emit light: the last ones
+    PatchCut cut;                      ///< whose cells they are
+    ChangesLeft left;                  ///< until it is the cut that is wanted
 };
 
 /// What a triangle looks like whose emission lies by second texture coordinates.
@@ -82,6 +85,13 @@ struct SurfelCounts {
     bool operator==(const SurfelCounts&) const = default;
 };
 
+/// The cut that a set's follows.
+struct LastCut {
+    const PatchCut* cut = nullptr;  ///< null: the set may be any
+    std::uint32_t most_new = 0;     ///< CutLimits::new_cells, of each kind of surfels
+    double gain = 1.0;              ///< CutLimits
+};
+
 /// Places surfels on the triangles that reflect light, and likewise on those that emit it, on both sides
 /// where the material is double-sided. The surfaces of an item are the root of a tree of patches. A cell is a
 /// patch: the trees are cut where the sum of shares (GuidePoint) and of area times density (density_at) is
@@ -100,9 +110,10 @@ class SurfelPlacement {
     ~SurfelPlacement() = default;
 
     /// `foci`: by item, in the triangles' space; an item without any has the density of a focus everywhere.
-    /// Empty: no item has any. `guide`: on these triangles; empty: only area and density count.
+    /// Empty: no item has any. `guide`: on these triangles; empty: only area and density count. `last`: the
+    /// trees are cut as then, but for few patches: see follow.
     [[nodiscard]] SurfelSet place(const SurfelCounts& counts, std::span<const std::vector<Focus>> foci = {},
-                                  std::span<const GuidePoint> guide = {});
+                                  std::span<const GuidePoint> guide = {}, const LastCut& last = {});
 
  private:
     /// The surfaces of an item.
@@ -126,6 +137,19 @@ class SurfelPlacement {
         double of_area = 1.0;
     };
 
+    /// Cells, and the cut that they are of.
+    struct CutCells {
+        std::vector<Cell> cells;
+        PatchCut cut;
+        ChangesLeft left{};
+    };
+    /// How cells are cut, besides by their weights.
+    struct Cutting {
+        std::span<const GuidePoint> guide{};  // those that the cells list
+        const PatchCut* within = nullptr;     // only what is opened there; null: all may be cut
+        PatchCut* record = nullptr;           // null: none
+    };
+
     void plant();
     [[nodiscard]] std::vector<Root> roots_of(bool emitting);
     [[nodiscard]] Weights weights_of(std::span<const std::vector<Focus>> foci,
@@ -134,12 +158,14 @@ class SurfelPlacement {
     [[nodiscard]] std::vector<Cell> share_items(const std::vector<Root>& roots, std::uint32_t count,
                                                 const Weights& weights) const;
     [[nodiscard]] std::vector<Cell> whole_items(const std::vector<Root>& roots, const Weights& weights) const;
-    [[nodiscard]] std::vector<Cell> cells_on(const std::vector<Root>& roots, std::uint32_t count,
-                                             const Weights& weights);
+    [[nodiscard]] CutCells cells_on(const std::vector<Root>& roots, std::uint32_t count,
+                                    const Weights& weights, const LastCut& last);
+    [[nodiscard]] CutCells cells_of(std::vector<Cell> whole, std::uint32_t count, const Weights& weights,
+                                    const PatchCut* within);
     void split(std::vector<Cell>& cells, std::size_t index, std::span<const GuidePoint> guide) const;
     template <class Weight>
     [[nodiscard]] std::vector<Cell> cut(std::vector<Cell> cells, std::uint32_t count, const Weight& weight,
-                                        std::span<const GuidePoint> guide = {});
+                                        const Cutting& cutting = {});
     void append(SurfelSet& set, const Cell& cell, std::uint32_t points);
 
     SceneTriangles scene_;

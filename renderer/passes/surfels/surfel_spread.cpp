@@ -103,9 +103,22 @@ std::vector<std::vector<Focus>> foci_by_item(const SceneLayout& layout, const Sc
     return local;
 }
 
+/// What the surfels of a frame are placed by.
+struct Wishes {
+    const std::vector<Focus>& foci;
+    const SurfelGuide* guide;  // null: none
+    SurfelCounts counts;
+    std::uint32_t most_new;  // surfels; 0: any number
+    bool moves;              // anything does
+};
+
+/// Surfels that are others also give another error: while things move, they stay where others are worth
+/// little more.
+constexpr double gain_in_motion = 2.0;
+
 SpreadSurfels spread(const SpreadSurfels* last, const SceneLayout& layout, const ScenePlacement& placement,
-                     const std::vector<Focus>& foci, const SurfelGuide* guide, const SurfelCounts& counts,
-                     std::uint32_t seed) {
+                     const Wishes& wishes, std::uint32_t seed) {
+    const auto& [foci, guide, counts, most_new, moves] = wishes;
     SpreadSurfels now;
     now.placement_key = {layout.geometry, shapes_of(placement), seed};
     now.key = {.counts = counts,
@@ -113,11 +126,15 @@ SpreadSurfels spread(const SpreadSurfels* last, const SceneLayout& layout, const
                .guide = {}};
     if (guide != nullptr && guide->is_of(now.placement_key)) now.key.guide = guide->points;
     const bool same_items = last != nullptr && last->placement_key == now.placement_key;
-    if (same_items && last->key == now.key) return *last;
+    const auto is_done = [&](const ChangesLeft& left) { return (moves ? left.gains : left.all) == 0; };
+    if (same_items && last->key == now.key && is_done(last->set->left)) return *last;
     now.placement = same_items
                         ? last->placement
                         : std::make_shared<SurfelPlacement>(triangles_of(layout, now.placement_key), seed);
-    now.set = std::make_shared<const SurfelSet>(now.placement->place(counts, now.key.foci, now.key.guide));
+    LastCut last_cut;
+    if (last != nullptr && most_new > 0) last_cut = {&last->set->cut, most_new, moves ? gain_in_motion : 1.0};
+    now.set = std::make_shared<const SurfelSet>(
+        now.placement->place(counts, now.key.foci, now.key.guide, last_cut));
     return now;
 }
 
@@ -249,6 +266,7 @@ ValueHandle<SpreadSurfels> add_surfel_spread(FrameGraph& graph, const SceneData&
         pass.read(scene.placement);
         pass.read(inputs.foci);
         if (inputs.guide) pass.read(*inputs.guide);
+        if (inputs.clock) pass.read(*inputs.clock);
         set.read(pass);
         const SurfelCounts counts{.reflecting = settings.bounces > 0 ? settings.count : 0,
                                   .emitting = emitting_surfels(settings.count)};
@@ -258,8 +276,14 @@ ValueHandle<SpreadSurfels> add_surfel_spread(FrameGraph& graph, const SceneData&
         const auto out = pass.update(graph.value<SpreadSurfels>("spread surfels"));
         pass.run([=, layout = scene.layout, placement = scene.placement](Execution& run) {
             const SurfelGuide* const guide = inputs.guide ? &run.value(*inputs.guide) : nullptr;
-            run.set(out, spread(run.previous(out), run.value(layout), run.value(placement),
-                                run.value(inputs.foci), guide, counts, settings.seed + set.number(run)));
+            const UpdateClock clock = inputs.clock ? run.value(*inputs.clock) : UpdateClock{};
+            const Wishes wishes{.foci = run.value(inputs.foci),
+                                .guide = guide,
+                                .counts = counts,
+                                .most_new = clock.limit < settings.count ? (clock.limit + 1) / 2 : 0,
+                                .moves = clock.moves};
+            run.set(out, spread(run.previous(out), run.value(layout), run.value(placement), wishes,
+                                settings.seed + set.number(run)));
         });
         return out;
     });

@@ -64,16 +64,27 @@ struct SpreadSurfels {
 [[nodiscard]] SurfelSet placed_in_world(const SpreadSurfels& spread, const SceneLayout& layout,
                                         const ScenePlacement& placement);
 
-/// What surfels are placed by. Without a guide, by area and foci alone.
+/// Set by the renderer before each frame, with VplSettings::updates.
+struct UpdateClock {
+    std::uint32_t limit = 0;  ///< VplSettings::updates: at least 1
+    std::uint64_t round = 0;  ///< a new value asks for more of what waits
+    bool moves = false;       ///< the world or a view has changed since the last frame
+    bool operator==(const UpdateClock&) const = default;
+};
+
+/// What surfels are placed by.
 struct SpreadInputs {
     ValueHandle<std::vector<Focus>> foci;
-    std::optional<ValueHandle<SurfelGuide>> guide{};
+    std::optional<ValueHandle<SurfelGuide>> guide{};  ///< none: by area and foci alone
+    std::optional<ValueHandle<UpdateClock>> clock{};  ///< none: at once
 };
 
 /// Adds node `surfel-spread` (CPU): places the surfels of a set on the items, densely in the foci and where
 /// the light comes from that is seen. Surfels belong to the items of the scene and move with them: all are
-/// placed again when an item is added, removed or changes its shape. Depends on the scene's layout and
-/// placement, on foci, guide and the set; its own last result saves time.
+/// placed again when an item is added, removed or changes its shape. With a clock whose limit they exceed,
+/// only half as many as that are replaced in a frame, so that the others can be traced, and while anything
+/// moves only where it is well worth it: see follow. Depends on the scene's layout and placement, on foci,
+/// guide, clock and the set, and with a clock on its own last result; without, that saves time.
 [[nodiscard]] ValueHandle<SpreadSurfels> add_surfel_spread(FrameGraph& graph, const SceneData& scene,
                                                            const SurfelSetChoice& set,
                                                            const SpreadInputs& inputs,

@@ -132,15 +132,16 @@ Candidate candidate(const TracedSurfel* last, const SurfelNow& now, bool keeps_f
     return out;
 }
 
-/// The surfels whose turn has come: the most urgent ones.
+/// The surfels whose turn has come: those that send no light as long as they wait, then the most urgent ones.
 std::vector<bool> most_urgent(const std::vector<Candidate>& candidates, std::size_t limit) {
     std::vector<std::uint32_t> order;
     order.reserve(candidates.size());
     for (std::uint32_t i = 0; i < candidates.size(); ++i) {
         if (candidates[i].task != 0) order.push_back(i);
     }
-    std::ranges::stable_sort(order, std::greater{},
-                             [&](std::uint32_t i) { return candidates[i].known.urgency; });
+    std::ranges::stable_sort(order, std::greater{}, [&](std::uint32_t i) {
+        return std::pair(candidates[i].instead != 0, candidates[i].known.urgency);
+    });
     std::vector<bool> chosen(candidates.size());
     for (std::size_t i = 0; i < std::min(limit, order.size()); ++i) chosen[order[i]] = true;
     return chosen;
@@ -161,6 +162,7 @@ TracedSurfel after(const Candidate& candidate, bool is_traced, std::uint64_t ste
 
 /// Resources of the node.
 struct UpdateNode {
+    ValueHandle<SpreadSurfels> spread;
     Surfels surfels;
     Tracing tracing;
     ValueHandle<SceneMotion> motion;
@@ -240,12 +242,12 @@ void plan(Execution& run, const UpdateNode& node) {
               .step = motion.step,
               .moved = last_steps(motion, last)};
     const std::vector<Candidate> all = candidates(run, node, last, now, changes);
-    const bool is_other = last != nullptr && (last->key != now.key || run.value(*node.foci.state).renewed);
+    const bool is_other = last != nullptr && last->key != now.key;
     const std::vector<bool> chosen = most_urgent(all, limit(run, node, all.size(), is_other));
     const SurfelTasks* const tasks_before = run.previous(node.out.tasks);
     SurfelTasks tasks{
         .of = {}, .changed = {}, .number = tasks_before != nullptr ? tasks_before->number + 1 : 0};
-    std::uint32_t waiting = 0;
+    WaitingSurfels waiting{.to_be_traced = 0, .to_be_placed = run.value(node.spread).set->left};
     std::uint64_t oldest = motion.step;  // state of surfels of which parts are traced
     now.surfels.reserve(all.size());
     tasks.of.reserve(all.size());
@@ -253,7 +255,7 @@ void plan(Execution& run, const UpdateNode& node) {
         if (chosen[i] && (all[i].task & SURFEL_CHANGED) != 0) oldest = std::min(oldest, all[i].known.step);
         now.surfels.push_back(after(all[i], chosen[i], motion.step));
         tasks.of.push_back(chosen[i] ? all[i].task : all[i].instead);
-        if (now.surfels.back().waits) ++waiting;
+        if (now.surfels.back().waits) ++waiting.to_be_traced;
     }
     tasks.changed = moved_since(now, oldest);
     const auto is_same = [](const TracedSurfel& a, const TracedSurfel& b) { return a.cell == b.cell; };
@@ -267,11 +269,13 @@ void plan(Execution& run, const UpdateNode& node) {
 
 }  // namespace
 
-SurfelUpdates add_surfel_updates(FrameGraph& graph, const Surfels& surfels, const Tracing& tracing,
-                                 ValueHandle<SceneMotion> motion, const SurfelFoci& foci,
-                                 const SurfelSetChoice& set, ValueHandle<UpdateClock> clock) {
+SurfelUpdates add_surfel_updates(FrameGraph& graph, ValueHandle<SpreadSurfels> spread, const Surfels& surfels,
+                                 const Tracing& tracing, ValueHandle<SceneMotion> motion,
+                                 const SurfelFoci& foci, const SurfelSetChoice& set,
+                                 ValueHandle<UpdateClock> clock) {
     return graph.add("surfel-updates", [&](Pass& pass) {
         pass.keeps_state();
+        pass.read(spread);
         pass.read(surfels.ids);
         pass.read(surfels.cells);
         pass.read(surfels.places);
@@ -279,10 +283,10 @@ SurfelUpdates add_surfel_updates(FrameGraph& graph, const Surfels& surfels, cons
         pass.read(tracing.metrics);
         pass.read(motion);
         pass.read(foci.foci);
-        pass.read(*foci.state);
         set.read(pass);
         pass.read(clock);
-        const UpdateNode node{.surfels = surfels,
+        const UpdateNode node{.spread = spread,
+                              .surfels = surfels,
                               .tracing = tracing,
                               .motion = motion,
                               .foci = foci,
@@ -290,7 +294,7 @@ SurfelUpdates add_surfel_updates(FrameGraph& graph, const Surfels& surfels, cons
                               .clock = clock,
                               .queue = pass.update(graph.value<Queue>("queue of surfels")),
                               .out = {.tasks = pass.update(graph.value<SurfelTasks>("tasks of surfels")),
-                                      .waiting = pass.write(graph.value<std::uint32_t>("waiting surfels"))}};
+                                      .waiting = pass.write(graph.value<WaitingSurfels>("waiting surfels"))}};
         pass.run([=](Execution& run) { plan(run, node); });
         return node.out;
     });

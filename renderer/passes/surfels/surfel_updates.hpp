@@ -34,24 +34,34 @@ struct TracedSurfel {
     bool operator==(const TracedSurfel&) const = default;
 };
 
+/// How many surfels wait for a later frame.
+struct WaitingSurfels {
+    std::uint32_t to_be_traced = 0;
+    ChangesLeft to_be_placed{};  ///< where others should be
+    /// Because the limit is reached: what is worth little waits for rest.
+    [[nodiscard]] std::uint32_t now() const { return to_be_traced + to_be_placed.gains; }
+    [[nodiscard]] bool any() const { return to_be_traced > 0 || to_be_placed.all > 0; }
+    bool operator==(const WaitingSurfels&) const = default;
+};
+
 struct SurfelUpdates {
     ValueHandle<SurfelTasks> tasks;
-    ValueHandle<std::uint32_t> waiting;  ///< surfels that wait for a later frame
+    ValueHandle<WaitingSurfels> waiting;
 };
 
 /// Adds node `surfel-updates` (CPU), which bounds the time of a frame in which things move: it decides for
 /// which surfels rays are traced, at most UpdateClock::limit. The others keep the depth maps and form factors
 /// that they have, also while their items move; those that have none yet send no light. A surfel's urgency
 /// is its share of the light, for which its area times the density of surfels there (density_at) stands,
-/// times the part of what it sees that has changed, summed over the frames in which it waits. The most urgent
-/// ones come first, so that all get their turn, also while things move all the time. When nothing waits, all
-/// is as if it had been traced at once. Another set of surfels is traced at once, and so are those of other
-/// foci, unless things or views move. Of a set that is prepared for later frames (SurfelSetChoice::is_next),
-/// a part is traced in each frame, so that it is ready in time if it is not too large. Depends on surfels,
-/// motion, foci, set and clock, and on its own last result.
-[[nodiscard]] SurfelUpdates add_surfel_updates(FrameGraph& graph, const Surfels& surfels,
-                                               const Tracing& tracing, ValueHandle<SceneMotion> motion,
-                                               const SurfelFoci& foci, const SurfelSetChoice& set,
-                                               ValueHandle<UpdateClock> clock);
+/// times the part of what it sees that has changed, summed over the frames in which it waits. Those that send
+/// no light come first, then the most urgent ones, so that all get their turn, also while things move all the
+/// time. When nothing waits, all is as if it had been traced at once. Another set of surfels is traced at
+/// once. Of a set that is prepared for later frames (SurfelSetChoice::is_next), a part is traced in each
+/// frame, so that it is ready in time if it is not too large. Depends on surfels, motion, foci, set and
+/// clock, and on its own last result.
+[[nodiscard]] SurfelUpdates add_surfel_updates(FrameGraph& graph, ValueHandle<SpreadSurfels> spread,
+                                               const Surfels& surfels, const Tracing& tracing,
+                                               ValueHandle<SceneMotion> motion, const SurfelFoci& foci,
+                                               const SurfelSetChoice& set, ValueHandle<UpdateClock> clock);
 
 }  // namespace candela

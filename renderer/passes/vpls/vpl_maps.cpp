@@ -51,7 +51,7 @@ struct MapNode {
     TracedContent<MapKey> drawn;
     ChangedBoxes changed;
     ValueHandle<std::vector<std::uint64_t>> drawn_keys;  // SurfelMaps::keys
-    BufferHandle<std::uint32_t> tasks;                   // SurfelTasks::of
+    BufferHandle<glm::uvec2> tasks;                      // see listed_tasks
     const gl::Program* program;
 };
 
@@ -66,13 +66,30 @@ std::vector<std::uint32_t> tasks_of(const SurfelMaps& maps, const std::vector<st
     return tasks;
 }
 
-/// What is drawn in the slots of the maps.
-struct MapDraw {
-    std::uint32_t slots = 0;                             // from 0
-    std::optional<std::vector<Box>> changed;             // see changed_boxes; none: all that is not there
-    bool has_tasks = false;                              // MapNode::tasks tells which maps are drawn
-    const std::vector<std::uint32_t>* filled = nullptr;  // SurfelTasks::of, if it has SURFEL_NO_MAP
+/// What is to be drawn of each surfel.
+struct MapTasks {
+    std::vector<std::uint32_t> of;            // SurfelTasks::of
+    std::optional<std::vector<Box>> changed;  // see changed_boxes; none: all that is not there
 };
+
+/// Each with the index of its surfel; behind them the slots up to `slots` that surfels had and have no more.
+/// `changed`: none: all maps are cleared.
+std::vector<glm::uvec2> listed_tasks(const std::vector<std::uint32_t>& tasks, std::size_t slots,
+                                     const std::optional<std::vector<Box>>& changed) {
+    std::vector<glm::uvec2> listed;
+    for (std::uint32_t i = 0; i < slots; ++i) {
+        const std::uint32_t task = i < tasks.size() && changed ? tasks[i] : std::uint32_t{SURFEL_WHOLE};
+        const bool is_left_out = i < tasks.size() && (tasks[i] & SURFEL_NO_MAP) != 0;
+        const bool sees_change = (task & SURFEL_CHANGED) != 0 && !changed->empty();
+        if (is_left_out) continue;
+        if ((task & SURFEL_WHOLE) != 0) {
+            listed.emplace_back(i, SURFEL_WHOLE);
+        } else if (sees_change) {
+            listed.emplace_back(i, SURFEL_CHANGED);
+        }
+    }
+    return listed;
+}
 
 /// Fills the maps that let no light through: what they see is near, and before every surface.
 void fill_maps(const Gpu& gpu, const Execution& run, const MapNode& node, const MappedSurfels& surfels,
@@ -94,48 +111,60 @@ void fill_maps(const Gpu& gpu, const Execution& run, const MapNode& node, const 
     }
 }
 
-void trace_maps(Gpu& gpu, Execution& run, const MapNode& node, const MapDraw& draw) {
-    gpu.gl().MemoryBarrier(GL_TEXTURE_UPDATE_BARRIER_BIT);  // texels that were traced before are cleared
-    if (!draw.changed) {
-        gpu.gl().ClearTexImage(run.object(node.maps.depth), 0, GL_RED, GL_FLOAT, nullptr);
-        gpu.gl().ClearTexImage(run.object(node.maps.slopes), 0, GL_RED_INTEGER, GL_UNSIGNED_INT, nullptr);
-    }
-    if (draw.filled != nullptr) fill_maps(gpu, run, node, *node.surfels, *draw.filled);
-    gl::Uniforms uniforms =
-        node.changed.upload(gpu, run, draw.changed, 4.0F * run.value(node.tracing.metrics).ray_offset());
-    if (node.surfels) uniforms = uniforms + gl::Uniforms{{"has_tasks", draw.has_tasks}};
+void clear_maps(const Gpu& gpu, const Execution& run, const MapNode& node) {
+    gpu.gl().ClearTexImage(run.object(node.maps.depth), 0, GL_RED, GL_FLOAT, nullptr);
+    gpu.gl().ClearTexImage(run.object(node.maps.slopes), 0, GL_RED_INTEGER, GL_UNSIGNED_INT, nullptr);
+}
+
+/// `count`: of tasks, or of traced VPLs.
+void trace_maps(Gpu& gpu, Execution& run, const MapNode& node, const std::optional<std::vector<Box>>& changed,
+                std::uint32_t count) {
+    const gl::Uniforms uniforms =
+        node.changed.upload(gpu, run, changed, 4.0F * run.value(node.tracing.metrics).ray_offset());
     const std::uint32_t blocks = groups(run.value(node.common.atlas).resolution, MAP_BLOCK);
     ComputeSteps steps(gpu);
-    for (std::uint32_t first = 0; first < draw.slots; first += most_groups) {
-        steps.run(*node.program, {blocks, blocks, std::min(draw.slots - first, most_groups)},
-                  uniforms + gl::Uniforms{{"first_vpl", first}});
+    for (std::uint32_t first = 0; first < count; first += most_groups) {
+        steps.run(*node.program, {blocks, blocks, std::min(count - first, most_groups)},
+                  uniforms + gl::Uniforms{{"first_task", first}});
     }
 }
 
-void update_surfel_maps(Gpu& gpu, Execution& run, const MapNode& node, const MappedSurfels& surfels) {
+/// None: all has been drawn. `drawn`: the keys of the maps that are there.
+std::optional<MapTasks> map_tasks(Execution& run, const MapNode& node, const MappedSurfels& surfels,
+                                  const std::vector<std::uint64_t>& drawn) {
     const VplAtlas& atlas = run.value(node.common.atlas);
-    const auto* const last = run.previous(node.drawn_keys);
-    const std::vector<std::uint64_t> drawn = last != nullptr ? *last : std::vector<std::uint64_t>{};
-    const SurfelMaps& maps = run.value(surfels.maps);
     const MapKey key{atlas.resolution, atlas.side, atlas.near, surfels.tasks.has_value()};
     const std::vector<ObjectId> textures{run.object(node.maps.depth)};
-    run.set(node.drawn_keys, maps.keys);
-    MapDraw draw{.slots = static_cast<std::uint32_t>(std::max(maps.keys.size(), drawn.size())),
-                 .changed = {}};
-    if (surfels.tasks) {
-        const SurfelTasks& tasks = run.value(*surfels.tasks);
-        const TasksDone done = node.drawn.tasks_done(run, tasks.number, key, textures, textures);
-        if (done == TasksDone::all) return;
-        if (done == TasksDone::all_before) draw.changed = tasks.changed;
-        upload<std::uint32_t>(gpu, run, node.tasks, tasks.of);
-        draw.has_tasks = true;
-        draw.filled = &tasks.of;
-    } else {
-        draw.changed = node.drawn.outdated(run, run.value(surfels.motion), key, textures);
-        draw.has_tasks = draw.changed.has_value();
-        if (draw.has_tasks) upload<std::uint32_t>(gpu, run, node.tasks, tasks_of(maps, drawn));
+    if (!surfels.tasks) {
+        auto changed = node.drawn.outdated(run, run.value(surfels.motion), key, textures);
+        return MapTasks{tasks_of(run.value(surfels.maps), drawn), std::move(changed)};
     }
-    trace_maps(gpu, run, node, draw);
+    const SurfelTasks& tasks = run.value(*surfels.tasks);
+    switch (node.drawn.tasks_done(run, tasks.number, key, textures, textures)) {
+        case TasksDone::all:
+            return std::nullopt;
+        case TasksDone::all_before:
+            return MapTasks{tasks.of, tasks.changed};
+        case TasksDone::none:
+            break;
+    }
+    return MapTasks{tasks.of, std::nullopt};
+}
+
+void update_surfel_maps(Gpu& gpu, Execution& run, const MapNode& node, const MappedSurfels& surfels) {
+    const auto* const last = run.previous(node.drawn_keys);
+    const std::vector<std::uint64_t> drawn = last != nullptr ? *last : std::vector<std::uint64_t>{};
+    const std::vector<std::uint64_t>& keys = run.value(surfels.maps).keys;
+    run.set(node.drawn_keys, keys);
+    const std::optional<MapTasks> tasks = map_tasks(run, node, surfels, drawn);
+    if (!tasks) return;
+    gpu.gl().MemoryBarrier(GL_TEXTURE_UPDATE_BARRIER_BIT);  // texels that were traced before are cleared
+    if (!tasks->changed) clear_maps(gpu, run, node);
+    fill_maps(gpu, run, node, surfels, tasks->of);
+    const std::vector<glm::uvec2> listed =
+        listed_tasks(tasks->of, std::max(keys.size(), drawn.size()), tasks->changed);
+    upload<glm::uvec2>(gpu, run, node.tasks, listed);
+    trace_maps(gpu, run, node, tasks->changed, static_cast<std::uint32_t>(listed.size()));
 }
 
 void update_maps(Gpu& gpu, Execution& run, const MapNode& node) {
@@ -151,7 +180,9 @@ void update_maps(Gpu& gpu, Execution& run, const MapNode& node) {
     }
     node.drawn.forget(run);
     run.set(node.drawn_keys, {});
-    trace_maps(gpu, run, node, {.slots = run.value(node.counts).mapped(), .changed = {}});
+    gpu.gl().MemoryBarrier(GL_TEXTURE_UPDATE_BARRIER_BIT);
+    clear_maps(gpu, run, node);
+    trace_maps(gpu, run, node, std::nullopt, run.value(node.counts).mapped());
 }
 
 /// Returns the names to define in shaders that include mapped_vpl.glsl.
@@ -197,7 +228,7 @@ VplMaps add_vpl_maps(FrameGraph& graph, Gpu& gpu, const Tracing& tracing, const 
             .drawn = TracedContent<MapKey>(graph, pass, "drawn vpl maps"),
             .changed = ChangedBoxes(graph, pass, "changed boxes of vpl maps"),
             .drawn_keys = pass.update(graph.value<std::vector<std::uint64_t>>("keys of vpl maps")),
-            .tasks = pass.write(growing_buffer<std::uint32_t>(graph, "tasks of vpl maps"),
+            .tasks = pass.write(growing_buffer<glm::uvec2>(graph, "tasks of vpl maps"),
                                 {Usage::copy, BINDING_MAP_TASKS}),
             .program = &gpu.program({"vpls/vpl_maps.comp"}, defined)};
         graph.note(node.maps.depth, depth_note(common.atlas, [](const VplAtlas& atlas, std::uint32_t) {

@@ -233,11 +233,10 @@ class CANDELA_API FrameGraph {
     /// of passes, and those of persistent and imported resources within each kind, must be unique.
     void append_to_keys(std::optional<std::string_view> ending);
 
-    /// Passes that are declared from now on do not run in frames in which `held` is true: what they have
-    /// written stays as it is, although their inputs change, and they run when it is false again. Only once
-    /// all of them have run, so that what they need of each other is there. A pass that is declared before
-    /// them sets the value, and a pass that is not held has to read it, as they do not count as its readers.
-    /// None: no pass is held any more.
+    /// Passes that are declared from now on do not run in frames in which `held`, an imported value, is true:
+    /// what they have written stays as it is, although their inputs change, and they run when it is false
+    /// again. Only once all of them have run, so that what they need of each other is there. None: no pass is
+    /// held any more.
     void hold_passes(std::optional<ValueHandle<bool>> held);
 
     /// A texture with the given description. For an imported one, `compile` checks the usages against `desc`,
