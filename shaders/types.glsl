@@ -162,7 +162,7 @@ struct Surfel {
     uint point_count;  // points of its cell
     float area;        // m², of its cell
     float width2;      // m², squared width of its cell: the area of a square one
-    uint map DEFAULT(0u);   // slot of its depth map, and SURFEL_MAP_OF_FOCUS; unused if it emits light
+    uint map DEFAULT(0u);   // slot of its depth map, and what it shows: SURFEL_MAP_*; unused if it emits light
     uint seed DEFAULT(0u);  // of its random directions
     float own DEFAULT(1.0F);  // share of `area` that is of its own item; the rest stands for other items
     float pad0 DEFAULT(0.0F);
@@ -176,7 +176,12 @@ struct Surfel {
 #define SURFEL_COLUMN 4u       // also those of the others to it
 #define SURFEL_NO_FACTORS 8u   // nothing: its form factors become 0
 #define SURFEL_NO_MAP 16u      // nothing: its depth map lets no light through
-#define SURFEL_MAP_OF_FOCUS 0x80000000u  // the depth map is a picture of VplConstants::focus_*, not of the hemisphere
+
+// The lower bits of Surfel::map are a slot. The others are 0 if the depth map shows the hemisphere, and otherwise 1 more
+// than the index of the focus that it is a picture of: VplConstants::foci.
+#define SURFEL_MAP_SLOT 0x1fffffffu
+#define SURFEL_MAP_FOCUS_SHIFT 29u
+#define SURFEL_MAP_FOCI 4
 
 // A surfel with the light that its cell reflects, as a VPL. Also a group of surfels, whose points are its surfels.
 struct LitSurfel {
@@ -285,8 +290,7 @@ struct VplConstants {
     uint map_tiles;           // slots along a side of a layer
     float map_side;           // texels along a side of a layer
     float map_near;           // metres, the octahedral distance at which map depth is 1
-    vec3 focus_centre;        // metres; SURFEL_MAP_OF_FOCUS: depth maps of surfels far from this sphere see it alone
-    float focus_radius;       // metres; 0: there is no such sphere
+    vec4 foci[4];             // SURFEL_MAP_FOCI spheres that maps of surfels far from them see alone: centre, radius; metres
     uint mapped;              // VPLs with depth maps; the records of groups of surfels follow theirs
     uint first_direction;     // index of the first direction of light that is the same everywhere
     uint mean_record;         // index of the LitSurfel that has this light: surfel_mean.comp

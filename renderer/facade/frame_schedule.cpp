@@ -24,6 +24,7 @@ void FrameSchedule::begin(const World& world, std::vector<ViewRequest> views,
     guide_waits_ = waiting_.to_be_placed.gains > 0 || (moved && ++guide_age_ < frames_a_guide);
     if (!guide_waits_) guide_age_ = 0;
     if (std::exchange(asks_for_more_, false)) ++update_clock_.round;
+    if (waiting_.maps > 0 || map_clock_.limit == 0) map_clock_ = update_clock_;
 }
 
 void FrameSchedule::complete(const FrameOutcome& outcome) {

@@ -37,6 +37,9 @@ class FrameSchedule {
     [[nodiscard]] const SurfelTurn& turn() const { return turn_; }
     [[nodiscard]] const RefinementClock& refinement_clock() const { return refinement_clock_; }
     [[nodiscard]] const UpdateClock& update_clock() const { return update_clock_; }
+    /// The update clock of the last frame before which maps were outdated: all surfels are written again for
+    /// each new value, which therefore has to be rare.
+    [[nodiscard]] const UpdateClock& map_clock() const { return map_clock_; }
     /// Whether the guide of surfels stays: others have yet to be placed by it, or things move and it is new.
     [[nodiscard]] bool guide_waits() const { return guide_waits_; }
 
@@ -74,6 +77,7 @@ class FrameSchedule {
     SurfelTurn turn_;
     RefinementClock refinement_clock_;
     UpdateClock update_clock_;
+    UpdateClock map_clock_;
     bool guide_waits_ = false;
     std::uint32_t guide_age_ = 0;  // frames in which something has moved
 

@@ -304,6 +304,7 @@ bool Renderer::State::render(const World& world, std::span<const RenderView> vie
     set_views(views);
     if (frame_.refinement_clock) runtime_.set(*frame_.refinement_clock, schedule_.refinement_clock());
     if (frame_.update_clock) runtime_.set(*frame_.update_clock, schedule_.update_clock());
+    if (frame_.map_clock) runtime_.set(*frame_.map_clock, schedule_.map_clock());
     if (frame_.guide_waits) runtime_.set(*frame_.guide_waits, schedule_.guide_waits());
     if (frame_.receivers) runtime_.set(*frame_.receivers, receivers_);
     if (frame_.epoch) runtime_.set(*frame_.epoch, epoch_);

@@ -123,6 +123,7 @@ struct SurfelInputs {
     SurfelFoci foci;
     SurfelSources sources;
     std::optional<ValueHandle<UpdateClock>> update_clock;  ///< none: all is traced at once
+    std::optional<ValueHandle<UpdateClock>> map_clock;     ///< as FrameHandles::map_clock
     std::optional<ValueHandle<bool>> guide_waits;          ///< with a clock: the guide stays in this frame
     std::optional<ValueHandle<SurfelGuide>> guide{};       ///< none: surfels are placed by area alone
 };
@@ -159,6 +160,7 @@ SurfelInputs add_surfel_inputs(FrameGraph& graph, Gpu& gpu, const WantedVpls& wa
     frame.requests = graph.import_value<std::vector<ViewRequest>>("view requests");
     if (wanted.settings.updates > 0) {
         frame.update_clock = graph.import_value<UpdateClock>("update clock");
+        frame.map_clock = graph.import_value<UpdateClock>("map clock");
         if (wanted.guided) frame.guide_waits = graph.import_value<bool>("whether the guide waits");
     }
     SurfelInputs inputs{
@@ -169,6 +171,7 @@ SurfelInputs add_surfel_inputs(FrameGraph& graph, Gpu& gpu, const WantedVpls& wa
                     .sky = {},
                     .balanced = wanted.balanced},
         .update_clock = frame.update_clock,
+        .map_clock = frame.map_clock,
         .guide_waits = frame.guide_waits};
     if (lit.sky) inputs.sources.sky = add_sky_patches(graph, gpu, *lit.sky, refinement);
     if (wanted.guided) inputs.guide = add_guide(graph, gpu, wanted, lit, inputs, *frame.requests);
@@ -198,8 +201,9 @@ TracedSet add_traced_set(FrameGraph& graph, Gpu& gpu, const WantedVpls& wanted, 
     begin_place(graph, set.place);
     const ValueHandle<SpreadSurfels> spread =
         add_surfel_spread(graph, lit.scene, set, {inputs.foci.foci, inputs.guide, clock}, wanted.settings);
-    const Surfels surfels = add_surfels(graph, gpu, lit.scene, lit.tracing, inputs.motion, spread,
-                                        inputs.foci.of_maps, wanted.settings.count);
+    const Surfels surfels =
+        add_surfels(graph, gpu, lit.scene, lit.tracing, inputs.motion, spread, inputs.foci.of_maps,
+                    wanted.settings.count, clock ? inputs.map_clock : std::nullopt);
     std::optional<SurfelUpdates> updates;
     if (clock) {
         updates =
@@ -210,8 +214,7 @@ TracedSet add_traced_set(FrameGraph& graph, Gpu& gpu, const WantedVpls& wanted, 
         add_surfel_visibility(graph, gpu, lit.tracing, surfels, inputs.motion, wanted.balanced, tasks);
     end_place(graph);
     return {.visibility = visibility,
-            .mapped = {surfels.counts, MappedSurfels{surfels.surfels, surfels.maps, inputs.motion, tasks},
-                       inputs.foci.of_maps},
+            .mapped = {surfels.counts, MappedSurfels{surfels.surfels, surfels.maps, inputs.motion, tasks}},
             .waiting = updates ? std::optional(updates->waiting) : std::nullopt};
 }
 
@@ -236,7 +239,7 @@ VplSet add_path_set(FrameGraph& graph, Gpu& gpu, const WantedVpls& wanted, const
     const ValueHandle<PathPlan> plan =
         add_vpl_paths(graph, lit.tracing.metrics, lit.lights.table, refinement, wanted.settings);
     const Vpls vpls = add_vpl_trace(graph, gpu, lit.tracing, plan, lit.lights.buffer, wanted.bound);
-    return {vpls, {vpls.counts, std::get<TracedVpls>(vpls.records).vpls, std::nullopt}, std::nullopt};
+    return {vpls, {vpls.counts, std::get<TracedVpls>(vpls.records).vpls}, std::nullopt};
 }
 
 /// `inputs`: none for VPLs on paths.
@@ -256,7 +259,8 @@ MappedSet add_mapped_set(FrameGraph& graph, Gpu& gpu, const LitScene& lit,
                          const VplVisibilitySettings& visibility, const MappedVpls& mapped,
                          ValueHandle<VplCounts> counts, std::optional<std::uint32_t> place) {
     begin_place(graph, place);
-    MappedSet set{add_vpl_constants(graph, gpu, lit.tracing.metrics, counts, mapped.focus, visibility), {}};
+    MappedSet set{add_vpl_constants(graph, gpu, lit.tracing.metrics, counts, surfel_maps(mapped), visibility),
+                  {}};
     if (visibility.method == VplVisibility::maps) {
         set.maps = add_vpl_maps(graph, gpu, lit.tracing, mapped, set.common);
     }
@@ -295,7 +299,7 @@ VplLight add_other_set(FrameGraph& graph, Gpu& gpu, WantedVpls wanted, const Lit
     if (occluded) visibility.method = VplVisibility::rays;
     const VplLight light{.vpls = set.vpls,
                          .common = add_vpl_constants(graph, gpu, lit.tracing.metrics, set.vpls.counts,
-                                                     set.mapped.focus, visibility),
+                                                     surfel_maps(set.mapped), visibility),
                          .rays = occluded ? std::optional(lit.tracing) : std::nullopt};
     graph.append_to_names("");
     return light;

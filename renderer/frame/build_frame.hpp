@@ -50,6 +50,7 @@ struct FrameHandles {
     std::optional<ValueHandle<std::vector<ViewRequest>>> requests;
     std::optional<Vpls> vpls;                              ///< none without indirect light
     std::optional<ValueHandle<UpdateClock>> update_clock;  ///< imported; none without VplSettings::updates
+    std::optional<ValueHandle<UpdateClock>> map_clock;     ///< imported: FrameSchedule::map_clock; likewise
     std::optional<ValueHandle<bool>> guide_waits;  ///< imported: SurfelGuide stays in this frame; likewise
     std::optional<ValueHandle<WaitingSurfels>> waiting;  ///< SurfelUpdates::waiting, likewise
     /// The same of the set that is prepared; none if none is.

@@ -1,6 +1,6 @@
 // The atlas of the VPLs' maps: square slots (VplTile) in the layers of an array texture. A slot holds what is seen
 // from a VPL (MapFrame): the hemisphere above its surface in the hemi-octahedral map, or, if the VPL is far from the
-// focus (SURFEL_MAP_OF_FOCUS), a perspective picture of the focus, in which a texel is much smaller there. `map` is
+// focus (SURFEL_MAP_FOCI), a perspective picture of the focus, in which a texel is much smaller there. `map` is
 // Surfel::map, or the index of a traced VPL. Depth is the inverse of the
 // octahedral distance |x| + |y| + z or of z, so that it is linear over a plane (theory.md, "Planes in VPL maps"): 1 at
 // VplConstants::map_near and nearer, 0 where there is no surface. With its slope a texel knows the plane that it sees.
@@ -15,7 +15,7 @@ struct VplTile {
 
 VplTile vpl_tile(uint map) {
     uint tiles = vpl_constants.map_tiles;
-    uint slot = map & ~SURFEL_MAP_OF_FOCUS;
+    uint slot = map & SURFEL_MAP_SLOT;
     uint of_layer = slot % (tiles * tiles);
     uvec2 place = uvec2(of_layer % tiles, of_layer / tiles);
     return VplTile(place * vpl_constants.map_resolution, slot / (tiles * tiles));
@@ -33,10 +33,11 @@ struct MapFrame {
 };
 
 MapFrame vpl_map_frame(vec3 position, vec3 normal, uint map) {
-    vec3 to_focus = vpl_constants.focus_centre - position;
-    float radius2 = vpl_constants.focus_radius * vpl_constants.focus_radius;
+    bool is_far = map > SURFEL_MAP_SLOT;
+    vec4 focus = vpl_constants.foci[is_far ? (map >> SURFEL_MAP_FOCUS_SHIFT) - 1u : 0u];
+    vec3 to_focus = focus.xyz - position;
+    float radius2 = focus.w * focus.w;
     float distance2 = dot(to_focus, to_focus);
-    bool is_far = (map & SURFEL_MAP_OF_FOCUS) != 0u;
     vec3 axis = is_far ? to_focus * inversesqrt(distance2) : normal;
     vec3 tangent, bitangent;
     basis_around(axis, tangent, bitangent);

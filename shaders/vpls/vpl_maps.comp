@@ -16,7 +16,7 @@ uniform uint first_task;
 bool is_outdated(MapTask task, MappedVpl vpl) {
     if (everything_changed) return has_map(task.index);  // the atlas is cleared
     if (task.task == SURFEL_WHOLE) return true;
-    bool sees_above = (vpl.map & SURFEL_MAP_OF_FOCUS) == 0u;
+    bool sees_above = vpl.map <= SURFEL_MAP_SLOT;
     return has_map(task.index) && (!sees_above || may_have_changed_above(vpl.position, vpl.normal));
 }
 

@@ -250,14 +250,55 @@ TEST_CASE("maps of surfels far from the focus are other ones for each focus") {
     std::vector<gpu::Surfel> surfels(2);
     surfels[1].position.x = 100.0F;
     const Ids ids{1, 2};
-    const SurfelMaps first = place_maps(surfels, ids, ids, {glm::vec3(0.0F), 8.0F}, nullptr);
-    CHECK((surfels[0].map & SURFEL_MAP_OF_FOCUS) == 0);
-    CHECK((surfels[1].map & SURFEL_MAP_OF_FOCUS) != 0);
-    const SurfelMaps second = place_maps(surfels, ids, ids, {glm::vec3(1.0F), 8.0F}, &first);
+    const SurfelMaps first = place_maps(surfels, ids, ids, {glm::vec3(0.0F), 8.0F}, nullptr, 2);
+    CHECK(surfels[0].map <= SURFEL_MAP_SLOT);
+    CHECK(surfels[1].map > SURFEL_MAP_SLOT);
+    const SurfelMaps second = place_maps(surfels, ids, ids, {glm::vec3(1.0F), 8.0F}, &first, 2);
     CHECK(first.keys[0] == second.keys[0]);
     CHECK(first.keys[1] != second.keys[1]);
-    static_cast<void>(place_maps(surfels, ids, ids, {}, &second));
-    CHECK((surfels[1].map & SURFEL_MAP_OF_FOCUS) == 0);
+    static_cast<void>(place_maps(surfels, ids, ids, {}, &second, 2));
+    CHECK(surfels[1].map <= SURFEL_MAP_SLOT);
+}
+
+TEST_CASE("maps follow a focus a few at a time, and show what they did until then") {
+    constexpr std::uint32_t most_new = 3;
+    std::vector<gpu::Surfel> surfels(10);
+    Ids ids;
+    for (gpu::Surfel& surfel : surfels) {
+        surfel.position.x = 1000.0F;
+        ids.push_back(ids.size() + 1);
+    }
+    const auto focus_at = [](float x) { return Focus{glm::vec3(x, 0.0F, 0.0F), 8.0F}; };
+    const auto focus_of = [](const SurfelMaps& maps, const gpu::Surfel& surfel) {
+        return maps.foci.at((surfel.map >> SURFEL_MAP_FOCUS_SHIFT) - 1U);
+    };
+    SurfelMaps maps = place_maps(surfels, ids, ids, focus_at(0.0F), nullptr, most_new);
+    CHECK(maps.outdated == 0);
+    for (const std::uint32_t left : {7U, 4U, 1U, 0U}) {
+        const SurfelMaps before = maps;
+        maps = place_maps(surfels, ids, ids, focus_at(1.0F), &before, most_new);
+        CHECK(maps.outdated == left);
+        for (const gpu::Surfel& surfel : surfels) {
+            const std::uint32_t slot = surfel.map & SURFEL_MAP_SLOT;
+            const bool stays = maps.keys[slot] == before.keys[slot];
+            CHECK((stays ? focus_of(maps, surfel) == focus_of(before, surfel)
+                         : focus_of(maps, surfel) == focus_at(1.0F)));
+        }
+    }
+    std::vector<gpu::Surfel> others = surfels;
+    CHECK(maps.keys == place_maps(others, ids, ids, focus_at(1.0F), nullptr, most_new).keys);
+    // Each of them is shown by some, until there are more than can be told apart.
+    for (int i = 2; i < 12; ++i) {
+        const SurfelMaps before = maps;
+        maps = place_maps(surfels, ids, ids, focus_at(static_cast<float>(i)), &before, 1);
+        std::uint32_t outdated = 0;
+        for (const gpu::Surfel& surfel : surfels) {
+            CHECK(focus_of(maps, surfel).radius == 8.0F);
+            if (focus_of(maps, surfel) != focus_at(static_cast<float>(i))) ++outdated;
+        }
+        CHECK(outdated == maps.outdated);
+        CHECK(outdated < 10);
+    }
 }
 
 TEST_CASE("what far maps see encloses the focus, and stays while the focus moves a little") {

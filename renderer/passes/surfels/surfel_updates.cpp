@@ -62,7 +62,7 @@ struct Changes {
 /// The part of the half-space above a surfel that a box fills, about: that of the sphere around it. 0 if none
 /// of the box is above. A map of the focus also sees what is below.
 float share_of(const SurfelPlace& surfel, const Box& box) {
-    const bool sees_below = (surfel.map & SURFEL_MAP_OF_FOCUS) != 0;
+    const bool sees_below = surfel.map > SURFEL_MAP_SLOT;
     const glm::vec3 highest =
         glm::mix(box.lower, box.upper, glm::greaterThan(surfel.normal, glm::vec3(0.0F)));
     if (!sees_below && !(glm::dot(surfel.normal, highest - surfel.position) > 0.0F)) return 0.0F;
@@ -91,7 +91,7 @@ struct Candidate {
 /// Whether the depth map that is there may be looked up. That of a surfel which has moved shows nearly what
 /// it sees. Pictures of different foci have nothing in common.
 bool is_usable(const TracedSurfel& known, std::uint64_t map_key, std::uint32_t map) {
-    const bool of_focus = ((known.map | map) & SURFEL_MAP_OF_FOCUS) != 0;
+    const bool of_focus = std::max(known.map, map) > SURFEL_MAP_SLOT;
     return known.has_map && known.map == map && (known.map_key == map_key || !of_focus);
 }
 
@@ -247,7 +247,9 @@ void plan(Execution& run, const UpdateNode& node) {
     const SurfelTasks* const tasks_before = run.previous(node.out.tasks);
     SurfelTasks tasks{
         .of = {}, .changed = {}, .number = tasks_before != nullptr ? tasks_before->number + 1 : 0};
-    WaitingSurfels waiting{.to_be_traced = 0, .to_be_placed = run.value(node.spread).set->left};
+    WaitingSurfels waiting{.to_be_traced = 0,
+                           .maps = run.value(node.surfels.maps).outdated,
+                           .to_be_placed = run.value(node.spread).set->left};
     std::uint64_t oldest = motion.step;  // state of surfels of which parts are traced
     now.surfels.reserve(all.size());
     tasks.of.reserve(all.size());

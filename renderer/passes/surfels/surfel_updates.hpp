@@ -37,10 +37,11 @@ struct TracedSurfel {
 /// How many surfels wait for a later frame.
 struct WaitingSurfels {
     std::uint32_t to_be_traced = 0;
+    std::uint32_t maps = 0;      ///< SurfelMaps::outdated
     ChangesLeft to_be_placed{};  ///< where others should be
     /// Because the limit is reached: what is worth little waits for rest.
-    [[nodiscard]] std::uint32_t now() const { return to_be_traced + to_be_placed.gains; }
-    [[nodiscard]] bool any() const { return to_be_traced > 0 || to_be_placed.all > 0; }
+    [[nodiscard]] std::uint32_t now() const { return to_be_traced + maps + to_be_placed.gains; }
+    [[nodiscard]] bool any() const { return to_be_traced > 0 || maps > 0 || to_be_placed.all > 0; }
     bool operator==(const WaitingSurfels&) const = default;
 };
 

@@ -1,6 +1,7 @@
 #include "renderer/passes/surfels/surfels.hpp"
 
 #include <algorithm>
+#include <limits>
 #include <span>
 #include <unordered_map>
 #include <utility>
@@ -117,11 +118,19 @@ struct SurfelNode {
     ValueHandle<SceneMotion> motion;
     ValueHandle<SpreadSurfels> spread;
     ValueHandle<Focus> focus_of_maps;
+    std::optional<ValueHandle<UpdateClock>> clock;
+    std::uint32_t wanted = 0;
     ValueHandle<DividedCells> divided;
     TracedContent<DivisionKey> known;
     std::optional<GroupNode> groups;
     Surfels out;
 };
+
+/// Of surfels that stay, in a frame: a quarter of those that may be traced.
+std::uint32_t most_new_maps(const Execution& run, const SurfelNode& node) {
+    const std::uint32_t limit = node.clock ? run.value(*node.clock).limit : node.wanted;
+    return limit < node.wanted ? (limit + 3) / 4 : std::numeric_limits<std::uint32_t>::max();
+}
 
 void place_surfels(const Gpu& gpu, Execution& run, const SurfelNode& node) {
     const Surfels& out = node.out;
@@ -139,8 +148,9 @@ void place_surfels(const Gpu& gpu, Execution& run, const SurfelNode& node) {
     make_unique(cell_ids);
     set.ids = content_hashes(set, set.ids);
     make_unique(set.ids);
-    run.set(out.maps, place_maps(std::span(set.surfels).first(counts.surfels), cell_ids, set.ids,
-                                 run.value(node.focus_of_maps), run.previous(out.maps)));
+    run.set(out.maps,
+            place_maps(std::span(set.surfels).first(counts.surfels), cell_ids, set.ids,
+                       run.value(node.focus_of_maps), run.previous(out.maps), most_new_maps(run, node)));
     upload<gpu::Surfel>(gpu, run, out.surfels, set.surfels);
     upload<gpu::CellPoint>(gpu, run, out.points, set.points);
     run.set(out.counts, counts);
@@ -155,7 +165,8 @@ void place_surfels(const Gpu& gpu, Execution& run, const SurfelNode& node) {
 
 Surfels add_surfels(FrameGraph& graph, const Gpu& gpu, const SceneData& scene, const Tracing& tracing,
                     ValueHandle<SceneMotion> motion, ValueHandle<SpreadSurfels> spread,
-                    ValueHandle<Focus> focus_of_maps, std::uint32_t wanted) {
+                    ValueHandle<Focus> focus_of_maps, std::uint32_t wanted,
+                    std::optional<ValueHandle<UpdateClock>> clock) {
     return graph.add("surfels", [&](Pass& pass) {
         pass.read(spread);
         pass.read(scene.layout);
@@ -164,6 +175,7 @@ Surfels add_surfels(FrameGraph& graph, const Gpu& gpu, const SceneData& scene, c
         pass.read(tracing.metrics);
         pass.read(motion);
         pass.read(focus_of_maps);
+        if (clock) pass.read(*clock);
         pass.keeps_state();
         const std::uint32_t group_size = surfels_a_group(wanted);
         const std::optional<GroupNode> groups = write_groups(graph, pass, group_size);
@@ -184,6 +196,8 @@ Surfels add_surfels(FrameGraph& graph, const Gpu& gpu, const SceneData& scene, c
                               .motion = motion,
                               .spread = spread,
                               .focus_of_maps = focus_of_maps,
+                              .clock = clock,
+                              .wanted = wanted,
                               .divided = pass.update(graph.value<DividedCells>("divided cells")),
                               .known = TracedContent<DivisionKey>(graph, pass, "known division"),
                               .groups = groups,

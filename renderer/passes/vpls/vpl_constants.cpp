@@ -32,11 +32,16 @@ gpu::VplConstants constants_of(const VplCounts& counts, const SceneMetrics& metr
             .map_tiles = atlas.tiles,
             .map_side = static_cast<float>(atlas.side),
             .map_near = atlas.near,
-            .focus_centre = atlas.focus.centre,
-            .focus_radius = atlas.focus.radius,
+            .foci = {},
             .mapped = counts.mapped(),
             .first_direction = counts.sources() - counts.directions,
             .mean_record = counts.lit_surfels()};
+}
+
+void write_foci(gpu::VplConstants& constants, const SurfelMaps& maps) {
+    for (std::size_t i = 0; i < maps.foci.size(); ++i) {
+        constants.foci[i] = glm::vec4(maps.foci[i].centre, maps.foci[i].radius);
+    }
 }
 
 }  // namespace
@@ -60,12 +65,12 @@ VplAtlas plan_vpl_atlas(std::uint32_t resolution, std::uint32_t maps, const gl::
 }
 
 VplCommon add_vpl_constants(FrameGraph& graph, const Gpu& gpu, ValueHandle<SceneMetrics> metrics,
-                            ValueHandle<VplCounts> counts, std::optional<ValueHandle<Focus>> focus,
+                            ValueHandle<VplCounts> counts, std::optional<ValueHandle<SurfelMaps>> maps,
                             const VplVisibilitySettings& settings) {
     return graph.add("vpl-constants", [&](Pass& pass) {
         pass.read(metrics);
         pass.read(counts);
-        if (focus) pass.read(*focus);
+        if (maps) pass.read(*maps);
         pass.parameter(settings);
         const VplCommon out{
             .atlas = pass.write(graph.value<VplAtlas>("vpl atlas")),
@@ -73,9 +78,10 @@ VplCommon add_vpl_constants(FrameGraph& graph, const Gpu& gpu, ValueHandle<Scene
         pass.run([=, &gpu](Execution& run) {
             const SceneMetrics& scene = run.value(metrics);
             const VplCounts& vpls = run.value(counts);
-            VplAtlas atlas = atlas_of_scene(settings, vpls.mapped(), scene, gpu.device().limits());
-            if (focus) atlas.focus = run.value(*focus);
-            upload_one(gpu, run, out.constants, constants_of(vpls, scene, atlas));
+            const VplAtlas atlas = atlas_of_scene(settings, vpls.mapped(), scene, gpu.device().limits());
+            gpu::VplConstants constants = constants_of(vpls, scene, atlas);
+            if (maps) write_foci(constants, run.value(*maps));
+            upload_one(gpu, run, out.constants, constants);
             run.set(out.atlas, atlas);
         });
         return out;

@@ -8,7 +8,7 @@
 #include "renderer/gpu/gpu.hpp"
 #include "renderer/gpu/gpu_types.hpp"
 #include "renderer/passes/scene/bvh.hpp"
-#include "renderer/passes/surfels/surfel_focus.hpp"
+#include "renderer/passes/surfels/surfel_maps.hpp"
 #include "renderer/passes/vpls/vpl_counts.hpp"
 
 namespace candela {
@@ -22,7 +22,6 @@ struct VplAtlas {
     /// Octahedral distance in metres at which depth is 1 (shaders/vpls/vpl_atlas.glsl); rarely changes while
     /// objects move.
     float near = 1.0F;
-    Focus focus{};  ///< maps of surfels that are far from it see it alone; radius 0: there is none
     bool operator==(const VplAtlas&) const = default;
 };
 
@@ -43,10 +42,10 @@ struct VplCommon {
 };
 
 /// Adds node `vpl-constants` (CPU, then upload): VplCommon. Depends on the scene's metrics, the
-/// counts and focus_of_maps, if it is surfels that have maps.
+/// counts and the maps of surfels, if it is these that have some.
 [[nodiscard]] VplCommon add_vpl_constants(FrameGraph& graph, const Gpu& gpu,
                                           ValueHandle<SceneMetrics> metrics, ValueHandle<VplCounts> counts,
-                                          std::optional<ValueHandle<Focus>> focus,
+                                          std::optional<ValueHandle<SurfelMaps>> maps,
                                           const VplVisibilitySettings& settings);
 
 /// For a pass whose shader includes vpl_constants.glsl.

@@ -205,6 +205,11 @@ std::vector<std::string> read_mapped(Pass& pass, const MappedVpls& vpls) {
 
 }  // namespace
 
+std::optional<ValueHandle<SurfelMaps>> surfel_maps(const MappedVpls& vpls) {
+    const auto* const surfels = std::get_if<MappedSurfels>(&vpls.records);
+    return surfels != nullptr ? std::optional(surfels->maps) : std::nullopt;
+}
+
 VplMaps add_vpl_maps(FrameGraph& graph, Gpu& gpu, const Tracing& tracing, const MappedVpls& vpls,
                      const VplCommon& common) {
     return graph.add("vpl-maps", [&](Pass& pass) {

@@ -27,12 +27,14 @@ struct MappedSurfels {
 struct MappedVpls {
     ValueHandle<VplCounts> counts;
     std::variant<BufferHandle<gpu::TracedVpl>, MappedSurfels> records;
-    std::optional<ValueHandle<Focus>> focus;  ///< of the maps of surfels: SurfelFoci::of_maps
 };
+
+/// None for VPLs on paths.
+[[nodiscard]] std::optional<ValueHandle<SurfelMaps>> surfel_maps(const MappedVpls& vpls);
 
 /// Adds node `vpl-maps` (compute): a map of the planes that each VPL sees in the hemisphere above it, in the
 /// hemi-octahedral mapping (Cigolle et al., "A Survey of Efficient Representations for Independent Unit
-/// Vectors", 2014), or, of a surfel that is far from VplAtlas::focus, a perspective one of the focus. Each
+/// Vectors", 2014), or, of a surfel that is far from the focus, a perspective one of the focus. Each
 /// texel traces a ray through the BVH. In contrast to rasterised meshes, large triangles are therefore exact
 /// in a curved mapping whatever their tessellation, and a map costs as many rays as it has texels, however
 /// large the scene is. One dispatch covers all maps. With surfels, only new maps are traced
