@@ -270,7 +270,7 @@ SurfelPlacement::CutCells SurfelPlacement::cells_on(const std::vector<Root>& roo
 /// Appends the surfel of a cell.
 void SurfelPlacement::append(SurfelSet& set, const Cell& cell, std::uint32_t points) {
     std::vector<Cell> parts = cut({{cell.patch, cell.item, cell.scale}}, points,
-                                  [&](const Cell& part) { return tree_[part.patch].area; });
+                                  [&](const Cell& part) { return tree_[part.patch].area; }, {});
     // At random: neighbours in this order share sources of light among them.
     std::ranges::sort(parts, {},
                       [&](const Cell& part) { return random_of(tree_[part.patch].id, use_order); });

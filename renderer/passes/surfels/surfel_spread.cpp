@@ -118,23 +118,24 @@ constexpr double gain_in_motion = 2.0;
 
 SpreadSurfels spread(const SpreadSurfels* last, const SceneLayout& layout, const ScenePlacement& placement,
                      const Wishes& wishes, std::uint32_t seed) {
-    const auto& [foci, guide, counts, most_new, moves] = wishes;
     SpreadSurfels now;
     now.placement_key = {layout.geometry, shapes_of(placement), seed};
-    now.key = {.counts = counts,
-               .foci = foci_by_item(layout, placement, now.placement_key.shapes, foci),
+    now.key = {.counts = wishes.counts,
+               .foci = foci_by_item(layout, placement, now.placement_key.shapes, wishes.foci),
                .guide = {}};
-    if (guide != nullptr && guide->is_of(now.placement_key)) now.key.guide = guide->points;
+    if (wishes.guide != nullptr && wishes.guide->is_of(now.placement_key))
+        now.key.guide = wishes.guide->points;
     const bool same_items = last != nullptr && last->placement_key == now.placement_key;
-    const auto is_done = [&](const ChangesLeft& left) { return (moves ? left.gains : left.all) == 0; };
+    const auto is_done = [&](const ChangesLeft& left) { return (wishes.moves ? left.gains : left.all) == 0; };
     if (same_items && last->key == now.key && is_done(last->set->left)) return *last;
     now.placement = same_items
                         ? last->placement
                         : std::make_shared<SurfelPlacement>(triangles_of(layout, now.placement_key), seed);
     LastCut last_cut;
-    if (last != nullptr && most_new > 0) last_cut = {&last->set->cut, most_new, moves ? gain_in_motion : 1.0};
+    if (last != nullptr && wishes.most_new > 0)
+        last_cut = {&last->set->cut, wishes.most_new, wishes.moves ? gain_in_motion : 1.0};
     now.set = std::make_shared<const SurfelSet>(
-        now.placement->place(counts, now.key.foci, now.key.guide, last_cut));
+        now.placement->place(wishes.counts, now.key.foci, now.key.guide, last_cut));
     return now;
 }
 
