@@ -115,6 +115,7 @@ void find_foci(Execution& run, const FocusNode& node, std::uint32_t count) {
     const SceneMetrics& metrics = run.value(node.tracing.metrics);
     const std::vector<CameraView> views = requested_views(run.world(), run.value(node.requests));
     std::vector<float> distances;
+    distances.reserve(views.size());
     for (const CameraView& view : views) {
         distances.push_back(view_distance(view, traced, metrics.ray_offset()));
     }

@@ -251,6 +251,7 @@ SurfelPlacement::CutCells SurfelPlacement::cells_on(const std::vector<Root>& roo
                                count, weights, nullptr);
     if (last.cut == nullptr) return wanted;
     std::vector<std::uint32_t> patches;
+    patches.reserve(roots.size());
     for (const Root& root : roots) patches.push_back(root.patch);
     const FollowedCut followed =
         follow(tree_, patches, {*last.cut, wanted.cut}, {count, last.most_new, last.gain});
