@@ -21,12 +21,16 @@ layout(std430, binding = BINDING_SURFELS) readonly restrict buffer Surfels { Sur
 // Index of a surfel or of a freed slot, and what is to be drawn there: SURFEL_CHANGED and the like.
 layout(std430, binding = BINDING_MAP_TASKS) readonly restrict buffer MapTasks { uvec2 map_tasks[]; };
 
+uniform bool has_tasks;  // else all maps are drawn, in the order of the surfels
+
 bool is_freed(uint index) { return index >= vpl_constants.mapped; }
 
 // All but those on deformed triangles without area, and freed slots.
 bool has_map(uint index) { return !is_freed(index) && surfels[index].normal != vec3(0.0); }
 
-MapTask map_task(uint turn) { return MapTask(map_tasks[turn].x, map_tasks[turn].y); }
+MapTask map_task(uint turn) {
+    return has_tasks ? MapTask(map_tasks[turn].x, map_tasks[turn].y) : MapTask(turn, SURFEL_WHOLE);
+}
 
 MappedVpl mapped_vpl(uint index) {
     if (is_freed(index)) return MappedVpl(vec3(0.0), vec3(0.0), index);

@@ -116,11 +116,11 @@ void clear_maps(const Gpu& gpu, const Execution& run, const MapNode& node) {
     gpu.gl().ClearTexImage(run.object(node.maps.slopes), 0, GL_RED_INTEGER, GL_UNSIGNED_INT, nullptr);
 }
 
-/// `count`: of tasks, or of traced VPLs.
+/// `count`: of tasks, or of VPLs where all maps are drawn. `order`: which of both.
 void trace_maps(Gpu& gpu, Execution& run, const MapNode& node, const std::optional<std::vector<Box>>& changed,
-                std::uint32_t count) {
+                std::uint32_t count, const gl::Uniforms& order) {
     const gl::Uniforms uniforms =
-        node.changed.upload(gpu, run, changed, 4.0F * run.value(node.tracing.metrics).ray_offset());
+        order + node.changed.upload(gpu, run, changed, 4.0F * run.value(node.tracing.metrics).ray_offset());
     const std::uint32_t blocks = groups(run.value(node.common.atlas).resolution, MAP_BLOCK);
     ComputeSteps steps(gpu);
     for (std::uint32_t first = 0; first < count; first += most_groups) {
@@ -161,10 +161,15 @@ void update_surfel_maps(Gpu& gpu, Execution& run, const MapNode& node, const Map
     gpu.gl().MemoryBarrier(GL_TEXTURE_UPDATE_BARRIER_BIT);  // texels that were traced before are cleared
     if (!tasks->changed) clear_maps(gpu, run, node);
     fill_maps(gpu, run, node, surfels, tasks->of);
+    if (!surfels.tasks && !tasks->changed) {
+        trace_maps(gpu, run, node, {}, static_cast<std::uint32_t>(keys.size()), {{"has_tasks", false}});
+        return;
+    }
     const std::vector<glm::uvec2> listed =
         listed_tasks(tasks->of, std::max(keys.size(), drawn.size()), tasks->changed);
     upload<glm::uvec2>(gpu, run, node.tasks, listed);
-    trace_maps(gpu, run, node, tasks->changed, static_cast<std::uint32_t>(listed.size()));
+    trace_maps(gpu, run, node, tasks->changed, static_cast<std::uint32_t>(listed.size()),
+               {{"has_tasks", true}});
 }
 
 void update_maps(Gpu& gpu, Execution& run, const MapNode& node) {
@@ -182,7 +187,7 @@ void update_maps(Gpu& gpu, Execution& run, const MapNode& node) {
     run.set(node.drawn_keys, {});
     gpu.gl().MemoryBarrier(GL_TEXTURE_UPDATE_BARRIER_BIT);
     clear_maps(gpu, run, node);
-    trace_maps(gpu, run, node, std::nullopt, run.value(node.counts).mapped());
+    trace_maps(gpu, run, node, std::nullopt, run.value(node.counts).mapped(), {});
 }
 
 /// Returns the names to define in shaders that include mapped_vpl.glsl.
