@@ -162,14 +162,15 @@ void update_surfel_maps(Gpu& gpu, Execution& run, const MapNode& node, const Map
     if (!tasks->changed) clear_maps(gpu, run, node);
     fill_maps(gpu, run, node, surfels, tasks->of);
     if (!surfels.tasks && !tasks->changed) {
-        trace_maps(gpu, run, node, {}, static_cast<std::uint32_t>(keys.size()), {{"has_tasks", false}});
+        trace_maps(gpu, run, node, {}, static_cast<std::uint32_t>(keys.size()),
+                   gl::Uniforms{{"has_tasks", false}});
         return;
     }
     const std::vector<glm::uvec2> listed =
         listed_tasks(tasks->of, std::max(keys.size(), drawn.size()), tasks->changed);
     upload<glm::uvec2>(gpu, run, node.tasks, listed);
     trace_maps(gpu, run, node, tasks->changed, static_cast<std::uint32_t>(listed.size()),
-               {{"has_tasks", true}});
+               gl::Uniforms{{"has_tasks", true}});
 }
 
 void update_maps(Gpu& gpu, Execution& run, const MapNode& node) {
