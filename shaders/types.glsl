@@ -290,7 +290,7 @@ struct VplConstants {
     uint map_tiles;           // slots along a side of a layer
     float map_side;           // texels along a side of a layer
     float map_near;           // metres, the octahedral distance at which map depth is 1
-    vec4 foci[4];             // SURFEL_MAP_FOCI spheres that maps of surfels far from them see alone: centre, radius; metres
+    vec4 foci[4];             // SURFEL_MAP_FOCI spheres, of which a far surfel's map shows one: centre and radius, metres
     uint mapped;              // VPLs with depth maps; the records of groups of surfels follow theirs
     uint first_direction;     // index of the first direction of light that is the same everywhere
     uint mean_record;         // index of the LitSurfel that has this light: surfel_mean.comp

@@ -32,8 +32,9 @@ void FrameSchedule::complete(const FrameOutcome& outcome) {
     abandoned_ = false;
     waiting_ = outcome.waiting;
     guide_waits_ = guide_waits_ && outcome.has_guide;
-    asks_for_more_ = waits();
-    refines_ = !asks_for_more_ && outcome.refines;
+    // What is worth little waits for rest, which changes the clock.
+    asks_for_more_ = update_clock_.moves ? waiting_.now() > 0 : waiting_.any();
+    refines_ = !waits() && outcome.refines;
     if (outcome.refinement) refined_ = *outcome.refinement;
     next_set_is_complete_ = outcome.next_waits == false;
 }

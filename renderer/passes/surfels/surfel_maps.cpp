@@ -35,17 +35,17 @@ void keep_shown(SurfelMaps& maps, const SurfelMaps& last) {
 
 /// The index of a focus among those of the maps. If it is new and none is free, it takes the place of the one
 /// that the fewest show, which get new maps.
-std::uint32_t place_of(const Focus& focus, SurfelMaps& maps) {
+std::uint32_t index_of(const Focus& focus, SurfelMaps& maps) {
     const auto found = std::ranges::find(maps.foci, focus);
     if (found != maps.foci.end()) return static_cast<std::uint32_t>(found - maps.foci.begin());
     std::array<std::uint32_t, SURFEL_MAP_FOCI> counts{};
     for (const std::uint32_t shown : maps.shown) {
         if (shown != not_yet && shown > 0) ++counts[shown - 1];
     }
-    const auto place = static_cast<std::uint32_t>(std::ranges::min_element(counts) - counts.begin());
-    std::ranges::replace(maps.shown, place + 1, not_yet);
-    maps.foci[place] = focus;
-    return place;
+    const auto index = static_cast<std::uint32_t>(std::ranges::min_element(counts) - counts.begin());
+    std::ranges::replace(maps.shown, index + 1, not_yet);
+    maps.foci[index] = focus;
+    return index;
 }
 
 void forget_unseen(SurfelMaps& maps) {
@@ -90,7 +90,7 @@ SurfelMaps place_maps(std::span<gpu::Surfel> surfels, std::span<const std::uint6
     maps.keys.resize(surfels.size());
     maps.shown.assign(surfels.size(), not_yet);
     if (last != nullptr) keep_shown(maps, *last);
-    const std::uint32_t current = focus.radius > 0.0F ? 1 + place_of(focus, maps) : 0;
+    const std::uint32_t current = focus.radius > 0.0F ? 1 + index_of(focus, maps) : 0;
     for (std::size_t i = 0; i < surfels.size(); ++i) {
         const std::uint32_t slot = maps.slots[i];
         const std::uint32_t wanted = is_far(focus, surfels[i].position) ? current : 0;

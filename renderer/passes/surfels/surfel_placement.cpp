@@ -201,15 +201,15 @@ void SurfelPlacement::split(std::vector<Cell>& cells, std::size_t index,
 /// Cuts cells, always the one of the greatest weight, until there are `count`.
 template <class Weight>
 std::vector<SurfelPlacement::Cell> SurfelPlacement::cut(std::vector<Cell> cells, std::uint32_t count,
-                                                        const Weight& weight, const Cutting& cutting) {
+                                                        const Weight& weigh, const Cutting& cutting) {
     // The id makes the order of equal weights independent of the tree's.
     using Entry = std::tuple<double, std::uint64_t, std::size_t>;
     std::priority_queue<Entry> next;
     const auto queue = [&](std::size_t i) {
         const std::uint64_t id = tree_[cells[i].patch].id;
-        const double heaviness = weight(cells[i]);
-        if (cutting.record != nullptr) cutting.record->places[id] = {.weight = heaviness};
-        if (cutting.within == nullptr || cutting.within->opens(id)) next.emplace(heaviness, id, i);
+        const double weight = weigh(cells[i]);
+        if (cutting.record != nullptr) cutting.record->places[id] = {.weight = weight};
+        if (cutting.within == nullptr || cutting.within->opens(id)) next.emplace(weight, id, i);
     };
     for (std::size_t i = 0; i < cells.size(); ++i) queue(i);
     while (cells.size() < count && !next.empty()) {

@@ -164,7 +164,7 @@ class SurfelPlacement {
                                     const PatchCut* within);
     void split(std::vector<Cell>& cells, std::size_t index, std::span<const GuidePoint> guide) const;
     template <class Weight>
-    [[nodiscard]] std::vector<Cell> cut(std::vector<Cell> cells, std::uint32_t count, const Weight& weight,
+    [[nodiscard]] std::vector<Cell> cut(std::vector<Cell> cells, std::uint32_t count, const Weight& weigh,
                                         const Cutting& cutting);
     void append(SurfelSet& set, const Cell& cell, std::uint32_t points);
 

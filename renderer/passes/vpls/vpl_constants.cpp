@@ -3,6 +3,7 @@
 #include <fmt/format.h>
 #include <algorithm>
 #include <bit>
+#include <type_traits>
 
 #include <candela/graph/execute.hpp>
 #include "renderer/gpu/growing_buffer.hpp"
@@ -37,6 +38,8 @@ gpu::VplConstants constants_of(const VplCounts& counts, const SceneMetrics& metr
             .first_direction = counts.sources() - counts.directions,
             .mean_record = counts.lit_surfels()};
 }
+
+static_assert(std::extent_v<decltype(gpu::VplConstants::foci)> == SURFEL_MAP_FOCI);
 
 void write_foci(gpu::VplConstants& constants, const SurfelMaps& maps) {
     for (std::size_t i = 0; i < maps.foci.size(); ++i) {

@@ -161,6 +161,7 @@ void update_surfel_maps(Gpu& gpu, Execution& run, const MapNode& node, const Map
     gpu.gl().MemoryBarrier(GL_TEXTURE_UPDATE_BARRIER_BIT);  // texels that were traced before are cleared
     if (!tasks->changed) clear_maps(gpu, run, node);
     fill_maps(gpu, run, node, surfels, tasks->of);
+    // All, without a list: that would depend on what was drawn before, and results must not.
     if (!surfels.tasks && !tasks->changed) {
         trace_maps(gpu, run, node, {}, static_cast<std::uint32_t>(keys.size()),
                    gl::Uniforms{{"has_tasks", false}});
