@@ -135,7 +135,8 @@
 #define PIXEL_BLOCK 16      // pixels along an edge of the block that a work group shades: pixel_block.glsl
 #define MAP_BLOCK 8         // texels along an edge of the part of a VPL's map that a work group of vpl_maps.comp traces
 #define RECONSTRUCT_GROUP 64  // pixels of a row that a work group reconstructs
-#define LIST_GROUP 256      // invocations of the one work group that lists pixels
+#define LIST_GROUP 256      // invocations of a work group that lists pixels: vpl_fill_list.comp
+#define LIST_WORDS 16       // words of the fill mask that each of them lists
 #define FILL_GROUP 64       // pixels that a work group gathers VPLs for: vpl_fill.comp
 #define RECEIVER_GROUP 16   // receivers that a work group of receiver_light.comp lights
 #define SAMPLE_GROUP 16     // the same in vpl_samples.comp

@@ -82,8 +82,9 @@ BufferHandle<std::uint32_t> add_list(FrameGraph& graph, Gpu& gpu, const Columns&
                                                    Lifetime::persistent),
                        {Usage::storage, BINDING_FILL_LIST});
         pass.run([=, &gpu, &program](Execution&) {
-            ComputeSteps(gpu).run(program, {},
-                                  {{"row_words", row_words(size)}, {"mask_words", row_words(size) * size.y}});
+            const std::uint32_t mask_words = row_words(size) * size.y;
+            ComputeSteps(gpu).run(program, {groups(mask_words, LIST_GROUP * LIST_WORDS)},
+                                  {{"row_words", row_words(size)}, {"mask_words", mask_words}});
         });
         return list;
     });
