@@ -103,6 +103,31 @@ const TextureDesc& Execution::desc(TextureHandle texture) const {
     return slot(texture, false).storage.texture;
 }
 
+World& Execution::writable(std::type_index component, std::string_view name) const {
+    const detail::Step& step = runtime_.state_->steps[position_];
+    const auto suits = [&](const detail::Revision& revision) {
+        return revision.access.write && revision.access.type == component;
+    };
+    if (std::ranges::any_of(step.revisions, suits)) return *writable_;
+    throw GraphError(
+        fmt::format("pass '{}' changes {} components without having declared it", step.name, name));
+}
+
+World& Execution::with_entities() const {
+    const detail::Step& step = runtime_.state_->steps[position_];
+    if (step.writes_entities) return *writable_;
+    throw GraphError(
+        fmt::format("pass '{}' creates or destroys entities without having declared it", step.name));
+}
+
+Entity Execution::create() {
+    return with_entities().create();
+}
+
+void Execution::destroy(Entity entity) {
+    with_entities().destroy(entity);
+}
+
 std::uint64_t Execution::count_of(ResourceHandle buffer) const {
     return slot(buffer, false).storage.buffer.count;
 }
@@ -134,19 +159,9 @@ bool Execution::changed(ResourceHandle read) const {
     const detail::State& state = *runtime_.state_;
     const detail::Plan& plan = runtime_.graph_->plan();
     const detail::Step& step = state.steps[position_];
-    const auto is_part = [&](std::uint32_t version) {
-        return resource.first_part != none &&
-               runtime_.graph_->declared().resources[plan.resource(version)].part_of == read.resource;
-    };
     const std::uint32_t version = plan.version(read.resource, read.version);
-    bool is_input = false;
-    bool differs = has_no_result_;
-    for (const detail::Input& input : step.inputs) {
-        if (input.version != version && !is_part(input.version)) continue;
-        is_input |= input.version == version;
-        differs |= state.versions[input.version].stamp != input.stamp;
-    }
-    if (is_input) return differs;
+    const auto input = std::ranges::find(step.inputs, version, &detail::Input::version);
+    if (input != step.inputs.end()) return has_no_result_ || state.versions[version].stamp != input->stamp;
     throw GraphError(fmt::format("pass '{}' asks whether {} has changed without having declared it",
                                  step.name, resource.title()));
 }

@@ -10,7 +10,7 @@
 
 #include <fmt/format.h>
 
-#include "engine/graph/details/plan.hpp"
+#include "engine/graph/details/schedule.hpp"
 
 namespace candela {
 namespace detail {
@@ -33,8 +33,7 @@ void check_passes(Declaration& declared, std::string_view PassNode::*text, std::
 }
 
 void check_texture(Declaration& declared, const Resource& resource) {
-    // Parts and histories have the description of a texture that is checked.
-    if (resource.part_of != none || resource.history_of != none) return;
+    if (resource.history_of != none) return;  // it has the description of a texture that is checked
     if (const std::string why = why_impossible(resource.storage->texture); !why.empty()) {
         declared.error(ErrorCode::impossible_texture, "{} is not possible: {}", resource.title(), why);
     }
@@ -85,14 +84,16 @@ void number_versions(const Declaration& declared, Plan& plan) {
 }
 
 bool is_root(const Declaration& declared, std::uint32_t pass) {
-    if (declared.passes[pass].side_effect) return true;
-    return std::ranges::any_of(declared.accesses_of(pass), [&](const Access& access) {
-        return access.write && declared.resources[access.resource].lifetime == Lifetime::imported;
-    });
+    const PassNode& node = declared.passes[pass];
+    return node.side_effect || node.writes_entities ||
+           std::ranges::any_of(declared.components_of(pass), &ComponentAccess::write) ||
+           std::ranges::any_of(declared.accesses_of(pass), [&](const Access& access) {
+               return access.write && declared.resources[access.resource].lifetime == Lifetime::imported;
+           });
 }
 
-/// The passes that are kept, because they are roots (see is_root) or a kept pass uses their results. In the
-/// order of declaration, in which handles lead only from earlier to later passes.
+/// The passes that are kept, because they are roots (see is_root) or a kept pass uses their results, in the
+/// order of declaration.
 std::vector<std::uint32_t> needed_passes(const Declaration& declared, const Plan& plan) {
     std::vector<std::uint8_t> needed(declared.pass_count(), 0);
     std::vector<std::uint32_t> open;
@@ -112,11 +113,11 @@ std::vector<std::uint32_t> needed_passes(const Declaration& declared, const Plan
             need(plan.writer[plan.needed_version(declared, access)]);
         }
     }
-    std::vector<std::uint32_t> order;
+    std::vector<std::uint32_t> kept;
     for (std::uint32_t pass = 0; pass < declared.pass_count(); ++pass) {
-        if (needed[pass]) order.push_back(pass);
+        if (needed[pass]) kept.push_back(pass);
     }
-    return order;
+    return kept;
 }
 
 }  // namespace
@@ -155,7 +156,7 @@ CompiledGraph CompileResult::take() && {
     throw GraphError(message);
 }
 
-CompileResult compile(FrameGraph&& graph) {
+CompileResult compile(FrameGraph&& graph, std::optional<std::uint32_t> shuffle) {
     std::unique_ptr<detail::Declaration> declared = std::move(graph.declared_);
     auto plan = std::make_unique<detail::Plan>();
 
@@ -166,7 +167,7 @@ CompileResult compile(FrameGraph&& graph) {
     detail::check_resources(*declared);
     if (!declared->errors.empty()) return {std::nullopt, std::move(declared->errors)};
     detail::number_versions(*declared, *plan);
-    plan->order = detail::needed_passes(*declared, *plan);
+    plan->order = detail::schedule(*declared, *plan, detail::needed_passes(*declared, *plan), shuffle);
     detail::plan_objects(*declared, *plan);
     detail::plan_barriers(*declared, *plan);
     return {CompiledGraph(std::move(declared), std::move(plan)), {}};

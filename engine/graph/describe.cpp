@@ -1,22 +1,26 @@
 #include <candela/graph/describe.hpp>
 
 #include <algorithm>
+#include <array>
+#include <map>
 #include <span>
 #include <string>
+#include <tuple>
 #include <utility>
 #include <vector>
 
 #include <fmt/format.h>
+#include <fmt/ranges.h>
 
 #include <candela/graph/execute.hpp>
-#include "engine/graph/details/plan.hpp"
+#include "engine/graph/details/schedule.hpp"
 #include "engine/graph/details/state.hpp"
-#include "engine/json/json.hpp"
 
 namespace candela {
 namespace {
 
 using detail::Access;
+using detail::Dependency;
 using detail::none;
 using detail::Resource;
 
@@ -40,11 +44,7 @@ class Describer {
         for (std::uint32_t pass = 0; pass < declared_.pass_count(); ++pass) {
             if (position_[pass] == none) made_.culled.emplace_back(declared_.passes[pass].name);
         }
-        for (std::uint32_t position = 0; position < plan_.order.size(); ++position) {
-            for (const Access& access : declared_.accesses_of(plan_.order[position])) {
-                add_edge(access, position);
-            }
-        }
+        add_edges();
         return std::move(made_);
     }
 
@@ -81,7 +81,6 @@ class Describer {
                                .buffer = resource.storage->buffer,
                                .first = plan_.lifetime[index].first,
                                .last = plan_.lifetime[index].last};
-        if (resource.part_of != none) made.part_of = declared_.resources[resource.part_of].name;
         if (object != none) made.object = object;
         if (resource.history != none) made.history_object = object + 1;
         return made;
@@ -98,9 +97,10 @@ class Describer {
         const detail::PassNode& node = declared_.passes[pass];
         DescribedPass made{.name = std::string(node.name),
                            .side_effect = node.side_effect,
-                           .barrier = plan_.barrier[position]};
-        for (const detail::ComponentRead& read : declared_.components_of(pass)) {
-            made.components.emplace_back(read.name);
+                           .barrier = plan_.barrier[position],
+                           .writes_entities = node.writes_entities};
+        for (const detail::ComponentAccess& access : declared_.components_of(pass)) {
+            made.components.push_back({std::string(access.name), access.write});
         }
         for (const Access& access : declared_.accesses_of(pass)) {
             const Resource& resource = declared_.resources[access.resource];
@@ -118,25 +118,44 @@ class Describer {
         made_.passes.push_back(std::move(made));
     }
 
-    /// From the pass whose result is accessed.
-    void add_edge(const Access& access, std::uint32_t position) {
-        const bool history = declared_.resources[access.resource].history_of != none;
-        const std::uint32_t writer = plan_.writer[plan_.needed_version(declared_, access)];
-        if (writer == none || (writer == plan_.order[position] && !history)) return;
-        DescribedEdge edge{position_[writer], position, history, {index_of(access)}};
-        const auto same = std::find_if(first_edge(position), made_.edges.end(), [&](const auto& other) {
-            return other.from == edge.from && other.history == edge.history;
+    void add_edges() {
+        std::vector<std::uint32_t> kept = plan_.order;
+        std::ranges::sort(kept);
+        for (const Dependency& dependency : detail::find_dependencies(declared_, plan_, kept)) {
+            add_edge(dependency, subject_of(dependency));
+        }
+        for (const std::uint32_t pass : kept) {
+            for (const Access& access : declared_.accesses_of(pass)) {
+                const Resource& resource = declared_.resources[access.resource];
+                if (resource.history_of == none) continue;
+                const std::uint32_t writer = plan_.writer[plan_.needed_version(declared_, access)];
+                add_edge({writer, pass, DependencyKind::history}, resource.name);
+            }
+        }
+        std::ranges::sort(made_.edges, {}, [](const DescribedEdge& edge) {
+            return std::tuple(edge.to, edge.from, edge.kind);
         });
-        if (same == made_.edges.end()) {
-            made_.edges.push_back(std::move(edge));
-        } else if (std::ranges::count(same->resources, edge.resources.front()) == 0) {
-            same->resources.push_back(edge.resources.front());
+    }
+
+    [[nodiscard]] std::string_view subject_of(const Dependency& dependency) const {
+        switch (dependency.kind) {
+            case DependencyKind::result:
+            case DependencyKind::overwrite:
+                return declared_.resources[dependency.subject].name;
+            case DependencyKind::component_result:
+            case DependencyKind::component_overwrite:
+                return declared_.components[dependency.subject].name;
+            default:
+                return "";
         }
     }
 
-    /// The edges to the pass at `position` are the last ones.
-    [[nodiscard]] std::vector<DescribedEdge>::iterator first_edge(std::size_t position) {
-        return std::ranges::lower_bound(made_.edges, position, {}, &DescribedEdge::to);
+    void add_edge(const Dependency& dependency, std::string_view subject) {
+        const DescribedEdge edge{position_[dependency.from], position_[dependency.to], dependency.kind};
+        const auto [known, is_new] = edge_.try_emplace({edge.from, edge.to, edge.kind}, made_.edges.size());
+        if (is_new) made_.edges.push_back(edge);
+        std::vector<std::string>& subjects = made_.edges[known->second].subjects;
+        if (!subject.empty() && std::ranges::count(subjects, subject) == 0) subjects.emplace_back(subject);
     }
 
     const detail::Declaration& declared_;
@@ -144,6 +163,7 @@ class Describer {
     GraphDescription made_;
     std::vector<std::uint32_t> position_;  // per declared pass: its position, or none
     std::vector<std::uint32_t> index_;     // per declared resource: its index in the description, or none
+    std::map<std::tuple<std::size_t, std::size_t, DependencyKind>, std::size_t> edge_;  // its index
 };
 
 std::string name_of(const GraphDescription& graph, std::size_t resource, bool history) {
@@ -157,6 +177,12 @@ std::string access_text(const GraphDescription& graph, const DescribedAccess& ac
     return text;
 }
 
+/// To follow "after".
+std::string edge_text(const GraphDescription& graph, const DescribedEdge& edge) {
+    return fmt::format("{} ({}{}{})", graph.passes[edge.from].name, to_string(edge.kind),
+                       edge.subjects.empty() ? "" : ": ", fmt::join(edge.subjects, ", "));
+}
+
 std::string pass_text(const GraphDescription& graph, std::size_t position) {
     const DescribedPass& pass = graph.passes[position];
     std::string text =
@@ -164,10 +190,15 @@ std::string pass_text(const GraphDescription& graph, std::size_t position) {
     const auto line = [&](std::string_view verb, std::string_view what) {
         text += fmt::format("      {} {}\n", verb, what);
     };
-    if (pass.barrier != Barrier::none) line("barrier", to_string(pass.barrier));
-    for (const std::string& component : pass.components) {
-        line("world", component);
+    const auto edges = std::ranges::equal_range(graph.edges, position, {}, &DescribedEdge::to);
+    for (const DescribedEdge& edge : edges) {
+        if (edge.kind != DependencyKind::history) line("after", edge_text(graph, edge));
     }
+    if (pass.barrier != Barrier::none) line("barrier", to_string(pass.barrier));
+    for (const DescribedComponent& component : pass.components) {
+        line(component.write ? "change" : "world", component.name);
+    }
+    if (pass.writes_entities) line("change", "entities");
     for (const DescribedAccess& access : pass.accesses) {
         line(access.update ? "update" : access.write ? "write" : "read", access_text(graph, access));
     }
@@ -180,67 +211,6 @@ std::string resource_text(const DescribedResource& resource) {
     if (resource.object) text += fmt::format(", object {}", *resource.object);
     if (resource.history_object) text += fmt::format(", history in {}", *resource.history_object);
     return text + "\n";
-}
-
-/// For the inside of quotation marks.
-std::string dot_escaped(std::string_view text) {
-    std::string escaped;
-    for (const char character : text) {
-        if (character == '"' || character == '\\') escaped += '\\';
-        escaped += character;
-    }
-    return escaped;
-}
-
-std::string dot_edge(const GraphDescription& graph, const DescribedEdge& edge) {
-    std::string label;
-    for (const std::size_t resource : edge.resources) {
-        label += (label.empty() ? "" : "\\n") + dot_escaped(name_of(graph, resource, edge.history));
-    }
-    return fmt::format("    \"{}\" -> \"{}\" [label=\"{}\"{}];\n", dot_escaped(graph.passes[edge.from].name),
-                       dot_escaped(graph.passes[edge.to].name), label, edge.history ? ", style=dashed" : "");
-}
-
-Json pass_json(const GraphDescription& graph, const DescribedPass& pass) {
-    Json json{{"name", pass.name},
-              {"kind", pass.gpu ? "gpu" : "cpu"},
-              {"side_effect", pass.side_effect},
-              {"barrier", to_string(pass.barrier)},
-              {"world", Json::array(std::vector<Json>(pass.components.begin(), pass.components.end()))},
-              {"reads", Json::array()},
-              {"writes", Json::array()}};
-    for (const DescribedAccess& access : pass.accesses) {
-        Json entry{{"resource", name_of(graph, access.resource, access.history)},
-                   {"version", access.version}};
-        if (access.usage) entry["usage"] = to_string(*access.usage);
-        if (access.update) entry["update"] = true;
-        json[access.write ? "writes" : "reads"].push_back(std::move(entry));
-    }
-    return json;
-}
-
-Json resource_json(const DescribedResource& resource) {
-    Json json{{"name", resource.name},
-              {"storage", storage_text(resource)},
-              {"lifetime", to_string(resource.lifetime)},
-              {"first", resource.first},
-              {"last", resource.last}};
-    if (resource.object) json["object"] = *resource.object;
-    if (resource.history_object) json["history_object"] = *resource.history_object;
-    json["kind"] = to_string(resource.kind);
-    if (resource.kind == ResourceKind::buffer) {
-        json["count"] = resource.buffer.count;
-        json["stride"] = resource.buffer.stride;
-    }
-    if (resource.kind == ResourceKind::texture) {
-        const TextureDesc& desc = resource.texture;
-        json["format"] = to_string(desc.format);
-        json["shape"] = to_string(desc.shape);
-        json["size"] = {desc.size.x, desc.size.y};
-        json["layers"] = desc.layers;
-        json["mips"] = desc.mips;
-    }
-    return json;
 }
 
 }  // namespace
@@ -259,13 +229,19 @@ GraphDescription GraphRuntime::describe() const {
         if (!is_described(resources[index], object)) continue;
         const detail::Slot& slot = state_->slots[object];
         const bool is_import = resources[index].lifetime == Lifetime::imported;
-        if (!slot.view && (slot.filled || !is_import)) {
+        if (slot.filled || !is_import) {
             described->texture = slot.storage.texture;
             described->buffer = slot.storage.buffer;
         }
         ++described;
     }
     return made;
+}
+
+std::string_view to_string(DependencyKind kind) {
+    static constexpr std::array<std::string_view, 7> names{
+        "result", "overwrite", "component result", "component overwrite", "side effect", "after", "history"};
+    return names.at(static_cast<std::size_t>(kind));
 }
 
 std::string storage_text(const DescribedResource& resource) {
@@ -279,7 +255,6 @@ std::string storage_text(const DescribedResource& resource) {
         text += fmt::format(", {} of {} layers", to_string(desc.shape), desc.layers);
     }
     if (desc.mips != 1) text += fmt::format(", {} mips", desc.mips);
-    if (!resource.part_of.empty()) text += fmt::format(", part of {}", resource.part_of);
     return text;
 }
 
@@ -297,33 +272,6 @@ std::string describe_text(const GraphDescription& graph) {
         text += resource_text(resource);
     }
     return text;
-}
-
-std::string describe_dot(const GraphDescription& graph) {
-    std::string text =
-        "digraph frame {\n    rankdir=LR;\n    label=\"boxes: on the GPU; rounded: on the CPU; dashed: last "
-        "frame's\";\n    node [shape=box, style=filled, fillcolor=\"#cfe2f3\"];\n";
-    for (const DescribedPass& pass : graph.passes) {
-        const char* look = pass.gpu ? "" : " [style=\"rounded,filled\", fillcolor=\"#fff2cc\"]";
-        text += fmt::format("    \"{}\"{};\n", dot_escaped(pass.name), look);
-    }
-    for (const DescribedEdge& edge : graph.edges) {
-        text += dot_edge(graph, edge);
-    }
-    return text + "}\n";
-}
-
-std::string describe_json(const GraphDescription& graph) {
-    Json json{{"passes", Json::array()},
-              {"culled", Json::array(std::vector<Json>(graph.culled.begin(), graph.culled.end()))},
-              {"resources", Json::array()}};
-    for (const DescribedPass& pass : graph.passes) {
-        json["passes"].push_back(pass_json(graph, pass));
-    }
-    for (const DescribedResource& resource : graph.resources) {
-        json["resources"].push_back(resource_json(resource));
-    }
-    return json.dump(2) + "\n";
 }
 
 }  // namespace candela

@@ -39,9 +39,21 @@ void Execution::end_if_unwanted() const {
     if (wanted_ != nullptr && !(*wanted_)()) throw Unwanted();
 }
 
+const FrameRecord& GraphRuntime::run(World& world, Timing timing, const std::function<bool()>& wanted) {
+    return run(world, &world, timing, wanted);
+}
+
 const FrameRecord& GraphRuntime::run(const World& world, Timing timing, const std::function<bool()>& wanted) {
+    return run(world, nullptr, timing, wanted);
+}
+
+const FrameRecord& GraphRuntime::run(const World& world, World* writable, Timing timing,
+                                     const std::function<bool()>& wanted) {
     if (!graph_) throw GraphError("there is no frame graph");
     require_imports();
+    if (writable == nullptr) require_no_systems();
+    // The barriers that are planned for the end of a frame serve the next one, too.
+    if (!record_.complete) pending_barriers_ = all_barriers;
     mark(world, 0);
     // Set when a pass that might have changed its results did not: its readers may be marked without need.
     bool marked_too_many = false;
@@ -56,7 +68,7 @@ const FrameRecord& GraphRuntime::run(const World& world, Timing timing, const st
     }
     if (record_.complete) std::fill(state_->turned.begin(), state_->turned.end(), std::uint8_t{0});
     record_.complete = false;
-    Execution execution(*this, world);
+    Execution execution(*this, world, writable);
     if (wanted) execution.wanted_ = &wanted;
     Clock::time_point last = timing == Timing::on ? Clock::now() : Clock::time_point{};
     for (std::uint32_t position = 0; position < state_->step_count(); ++position) {
@@ -85,7 +97,7 @@ const FrameRecord& GraphRuntime::run(const World& world, Timing timing, const st
         } catch (const Unwanted&) {
             return record_;
         }
-        marked_too_many |= !renewed_results(step);
+        marked_too_many |= step.writes_world || !renewed_results(step);
         PassRecord& record = record_.passes[position];
         record.ran = true;
         if (timing == Timing::on) {
@@ -110,6 +122,13 @@ void GraphRuntime::require_imports() const {
     }
 }
 
+void GraphRuntime::require_no_systems() const {
+    const auto system = std::ranges::find_if(state_->steps, &detail::Step::writes_world);
+    if (system == state_->steps.end()) return;
+    throw GraphError(
+        fmt::format("pass '{}' changes the world, which is run with one that is const", system->name));
+}
+
 bool GraphRuntime::is_held(const detail::Step& step) const {
     if (step.held_by == none) return false;
     const void* const held = state_->slots[step.held_by].value.content.get();
@@ -123,7 +142,7 @@ bool GraphRuntime::dirty(const detail::Step& step, const World& world) const {
                                    return state_->versions[input.version].stamp != input.stamp;
                                }) ||
            std::ranges::any_of(step.revisions, [&](const detail::Revision& revision) {
-               return revision.of(world) != revision.tick;
+               return revision.access.revision(world) != revision.tick;
            });
 }
 
@@ -139,8 +158,27 @@ void GraphRuntime::mark(const World& world, std::uint32_t from) {
     }
 }
 
+/// Whether an earlier step may change components in this frame that the step reads or writes.
+bool GraphRuntime::follows_system(const detail::Step& step) const {
+    const std::vector<std::type_index>& changing = state_->components_to_change;
+    return !changing.empty() && std::ranges::any_of(step.revisions, [&](const detail::Revision& revision) {
+        return std::ranges::count(changing, revision.access.type) +
+                   std::ranges::count(changing, typeid(Entity)) >
+               0;
+    });
+}
+
+void GraphRuntime::note_system(const detail::Step& step) {
+    std::vector<std::type_index>& changing = state_->components_to_change;
+    if (step.writes_entities) changing.emplace_back(typeid(Entity));
+    for (const detail::Revision& revision : step.revisions) {
+        if (revision.access.write) changing.push_back(revision.access.type);
+    }
+}
+
 /// Forward sweep: a pass may change if it is dirty now, or if it has an input from a pass that may change.
 void GraphRuntime::mark_dirty(const World& world, std::uint32_t from) {
+    state_->components_to_change.clear();
     for (std::uint32_t position = from; position < state_->step_count(); ++position) {
         const detail::Step& step = state_->steps[position];
         std::uint8_t need = step.writes_import ? certain : nothing;
@@ -152,7 +190,9 @@ void GraphRuntime::mark_dirty(const World& world, std::uint32_t from) {
                     need |= may_change;
                 }
             }
+            if (follows_system(step)) need |= may_change;
         }
+        if (step.writes_world && need != nothing) note_system(step);
         state_->need[position] = need;
     }
 }
@@ -272,7 +312,7 @@ void GraphRuntime::keep_record(detail::Step& step, const World& world, bool chan
         input.stamp = state_->versions[input.version].stamp;
     }
     for (detail::Revision& revision : step.revisions) {
-        revision.tick = revision.of(world);
+        revision.tick = revision.access.revision(world);
     }
     ++clock_;
     for (const detail::Output& output : step.outputs) {

@@ -43,74 +43,14 @@ ResourceHandle add_resource(Declaration& declared, const detail::Name& name, con
 std::string_view why_no_history(const Resource& base) {
     if (base.lifetime == Lifetime::imported) return "is imported";
     if (base.history_of != none) return "is a history itself";
-    if (base.updated) return "is updated in place";
-    return base.first_part != none || base.part_of != none ? "has parts or is one" : "";
-}
-
-/// Empty if the texture can have the part.
-std::string_view why_no_part(const Declaration& declared, const Resource& whole, TexturePart part) {
-    if (whole.lifetime == Lifetime::imported) return "it is imported";
-    if (whole.history != none || whole.history_of != none || whole.part_of != none) {
-        return "it has a history, is one, or is a part itself";
-    }
-    if (whole.versions > 0 || whole.reader != none) return "a pass accesses it as a whole";
-    const TextureDesc& desc = whole.storage->texture;
-    const bool has_layer = part.layer == TexturePart::all_layers ||
-                           (part.layer < desc.layers && desc.shape != TextureShape::flat);
-    if (part.mip >= desc.mips || !has_layer) return "there are fewer";
-    for (std::uint32_t at = whole.first_part; at != none; at = declared.resources[at].next_part) {
-        const TexturePart other = declared.resources[at].part;
-        const bool one_is_whole_mip =
-            part.layer == TexturePart::all_layers || other.layer == TexturePart::all_layers;
-        if (part.mip == other.mip && one_is_whole_mip) return "it overlaps another part";
-    }
-    return "";
-}
-
-ResourceHandle add_part(Declaration& declared, TextureHandle of, TexturePart part) {
-    if (!declared.owns(of, ResourceKind::texture)) {
-        declared.error(ErrorCode::foreign_handle, "part of a texture {}", declared.fault_of(of));
-        return {};
-    }
-    const Resource whole = declared.resources[of.resource];
-    for (std::uint32_t at = whole.first_part; at != none; at = declared.resources[at].next_part) {
-        if (declared.resources[at].part == part) return {declared.id, at, 0};
-    }
-    if (const std::string_view why = why_no_part(declared, whole, part); !why.empty()) {
-        declared.error(ErrorCode::wrong_usage, "{} has no {}: {}", whole.title(), to_string(part), why);
-        return of;
-    }
-    const auto of_part = [&](std::string_view name) {
-        return declared.arena.store_text(fmt::format("{} {}", name, to_string(part)));
-    };
-    const detail::Name name{of_part(whole.name), of_part(whole.key)};
-    const ResourceHandle handle = add_resource(
-        declared, name, {.kind = ResourceKind::texture, .texture = part_desc(whole.storage->texture, part)},
-        Lifetime::persistent);
-    Resource& added = declared.resources[handle.resource];
-    added.part_of = of.resource;
-    added.part = part;
-    added.next_part = whole.first_part;
-    declared.resources[of.resource].first_part = handle.resource;
-    declared.resources[of.resource].lifetime = Lifetime::persistent;
-    return handle;
-}
-
-/// Whether passes have written it; a texture with parts is written if all of them are. Never a history.
-bool is_written(const Declaration& declared, const Resource& resource) {
-    if (resource.first_part == none) return resource.versions > 0;
-    std::uint32_t part = resource.first_part;
-    while (part != none && declared.resources[part].versions > 0) {
-        part = declared.resources[part].next_part;
-    }
-    return part == none;
+    return base.updated ? "is updated in place" : "";
 }
 
 /// See FrameGraph::find_texture. A null handle if there is none.
 ResourceHandle find(const Declaration& declared, std::string_view name, ResourceKind kind) {
     for (std::uint32_t index = detail::size_of(declared.resources); index-- > 0;) {
         const Resource& resource = declared.resources[index];
-        if (resource.storage->kind == kind && resource.name == name && is_written(declared, resource)) {
+        if (resource.storage->kind == kind && resource.name == name && resource.versions > 0) {
             return {declared.id, index, resource.versions};
         }
     }
@@ -202,14 +142,6 @@ ResourceHandle FrameGraph::add_buffer(std::string_view name, const BufferDesc& d
 
 ResourceHandle FrameGraph::add_value(std::string_view name, std::type_index type, Lifetime lifetime) {
     return add_resource(*declared_, declared_->store_name(name), {.type = type}, lifetime);
-}
-
-TextureHandle FrameGraph::mip(TextureHandle texture, std::uint32_t level) {
-    return {add_part(*declared_, texture, {level, TexturePart::all_layers})};
-}
-
-TextureHandle FrameGraph::layer(TextureHandle texture, std::uint32_t layer, std::uint32_t mip) {
-    return {add_part(*declared_, texture, {mip, layer})};
 }
 
 TextureHandle FrameGraph::history(TextureHandle texture) {

@@ -169,11 +169,7 @@ void Pass::declare_read(ResourceHandle handle, ResourceKind kind, Binding bindin
                                "pass '{}' reads {} as it was before pass '{}' wrote it", name,
                                resource.title(), writer_of(declared_, handle.resource, handle.version + 1));
     }
-    for (std::uint32_t part = resource.first_part; part != none; part = declared_.resources[part].next_part) {
-        declare_read({handle.graph, part, declared_.resources[part].versions}, kind, binding.usage);
-    }
-    const bool given =
-        resource.lifetime == Lifetime::imported || resource.history_of != none || resource.first_part != none;
+    const bool given = resource.lifetime == Lifetime::imported || resource.history_of != none;
     if (handle.version == 0 && !given) {
         declared_.error(ErrorCode::unwritten_read, "pass '{}' reads {}, which no pass has written", name,
                         resource.title());
@@ -183,8 +179,24 @@ void Pass::declare_read(ResourceHandle handle, ResourceKind kind, Binding bindin
         {handle.resource, handle.version, binding.usage, false, false, binding.point});
 }
 
-void Pass::declare_read(std::string_view component, Tick (*revision)(const World&)) {
-    declared_.components.push_back({component, revision});
+void Pass::declare_component(const detail::ComponentAccess& access) {
+    declared_.components.push_back(access);
+}
+
+void Pass::write_entities() {
+    declared_.passes.back().writes_entities = true;
+}
+
+void Pass::after(std::string_view pass) {
+    const auto others = std::span(declared_.passes).first(declared_.passes.size() - 1);
+    const auto found = std::ranges::find(others, pass, &detail::PassNode::name);
+    if (found == others.end()) {
+        return declared_.error(ErrorCode::unknown_pass,
+                               "pass '{}' is to run after pass '{}', which was not declared before it",
+                               declared_.passes.back().name, pass);
+    }
+    declared_.after.push_back(
+        {declared_.pass_count() - 1, static_cast<std::uint32_t>(found - others.begin())});
 }
 
 ResourceHandle Pass::declare_write(ResourceHandle handle, ResourceKind kind, Binding binding) {
@@ -204,7 +216,6 @@ ResourceHandle Pass::declare_write(ResourceHandle handle, ResourceKind kind, Bin
     if (kind == ResourceKind::value && resource.lifetime == Lifetime::imported) {
         return refuse("", "the host sets");
     }
-    if (resource.first_part != none) return refuse("", "has parts: only they can be written");
     check_binding(declared_, resource, binding, true);
     const std::uint32_t pass = declared_.pass_count() - 1;
     if (resource.reader == pass) report_feedback(declared_, resource);

@@ -79,23 +79,6 @@ std::uint64_t byte_size(const TextureDesc& desc) {
     return texels * desc.layers * bytes_per_texel(desc.format);
 }
 
-TextureDesc part_desc(const TextureDesc& whole, TexturePart part) {
-    TextureDesc desc = whole;
-    desc.size = glm::max(whole.size >> part.mip, glm::uvec2(1));
-    desc.mips = 1;
-    if (part.layer != TexturePart::all_layers) {
-        desc.shape = TextureShape::flat;
-        desc.layers = 1;
-    }
-    return desc;
-}
-
-std::string to_string(TexturePart part) {
-    if (part.layer == TexturePart::all_layers) return fmt::format("mip {}", part.mip);
-    return part.mip == 0 ? fmt::format("layer {}", part.layer)
-                         : fmt::format("layer {} mip {}", part.layer, part.mip);
-}
-
 std::uint64_t byte_size(const BufferDesc& desc) {
     return desc.count * desc.stride;
 }

@@ -10,7 +10,7 @@ namespace {
 
 /// Per step: whether it may run again after a frame (see GraphRuntime::verify). Excludes the steps that must
 /// not run again by themselves, then those that an excluded one keeps from it, until nothing changes.
-std::vector<std::uint8_t> repeatable_steps(const detail::State& state) {
+std::vector<std::uint8_t> repeatable_steps(const detail::State& state, const World& world) {
     std::vector<std::uint8_t> again(state.step_count(), 1);
     std::vector<std::uint8_t> settled(state.slots.size());         // holds an output of an excluded step
     std::vector<std::uint8_t> overwritten(state.versions.size());  // by an excluded step
@@ -26,12 +26,18 @@ std::vector<std::uint8_t> repeatable_steps(const detail::State& state) {
         const bool made_again = version.producer < again.size() && again[version.producer];
         return !overwritten[input.version] && (made_again || version.present);
     };
+    // A later pass may have changed the components that the step reads.
+    const auto has_changed = [&](const detail::Revision& revision) {
+        return revision.access.revision(world) != revision.tick;
+    };
     const auto can_write = [&](const detail::Output& output) { return !settled[output.slot]; };
 
     for (std::uint32_t position = 0; position < again.size(); ++position) {
         const detail::Step& step = state.steps[position];
-        if (!step.has_run || step.is_held || step.side_effect || step.writes_import || step.keeps_state)
+        if (!step.has_run || step.is_held || step.side_effect || step.writes_import || step.writes_world ||
+            step.keeps_state || std::ranges::any_of(step.revisions, has_changed)) {
             exclude(position);
+        }
     }
     for (bool excluded = true; excluded;) {
         excluded = false;
@@ -61,10 +67,10 @@ void GraphRuntime::verify(const World& world) {
     if (!graph_ || !verifying_) {
         throw GraphError("there is no frame to verify: there is no graph, or verification is off");
     }
-    const std::vector<std::uint8_t> again = repeatable_steps(*state_);
+    const std::vector<std::uint8_t> again = repeatable_steps(*state_, world);
     repeating_ = true;
     const detail::OnExit end([this] { repeating_ = false; });
-    Execution execution(*this, world);
+    Execution execution(*this, world, nullptr);
     pending_barriers_ = all_barriers;  // the planned barriers assume whole frames, one after the other
     for (std::uint32_t position = 0; position < state_->step_count(); ++position) {
         pending_barriers_ = pending_barriers_ | state_->steps[position].barrier;

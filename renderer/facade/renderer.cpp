@@ -94,10 +94,6 @@ GraphDescription Renderer::description() const {
     return state_->description();
 }
 
-std::string Renderer::describe(GraphFormat format) const {
-    return state_->describe(format);
-}
-
 Quality Renderer::quality() const {
     return state_->quality();
 }

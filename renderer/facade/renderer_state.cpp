@@ -493,17 +493,4 @@ GraphDescription Renderer::State::description() const {
     return runtime_.describe();
 }
 
-std::string Renderer::State::describe(GraphFormat format) const {
-    const GraphDescription graph = description();
-    switch (format) {
-        case GraphFormat::dot:
-            return describe_dot(graph);
-        case GraphFormat::json:
-            return describe_json(graph);
-        case GraphFormat::text:
-            break;
-    }
-    return describe_text(graph);
-}
-
 }  // namespace candela

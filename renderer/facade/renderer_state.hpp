@@ -46,7 +46,6 @@ class CANDELA_PRIVATE Renderer::State {
     [[nodiscard]] std::vector<FrameReport> take_frames(bool wait);
     [[nodiscard]] Report report(std::size_t view);
     [[nodiscard]] GraphDescription description() const;
-    [[nodiscard]] std::string describe(GraphFormat format) const;
     [[nodiscard]] Quality quality() const { return {shape_.quality.scale, frame_.views.front().interleave}; }
     [[nodiscard]] bool settled() const { return schedule_.settled(); }
     [[nodiscard]] const std::vector<PassRecord>& last_passes() const { return last_passes_; }

@@ -56,14 +56,6 @@ ObjectId GraphBackend::create_buffer(std::string_view name, const BufferDesc& de
     return id;
 }
 
-ObjectId GraphBackend::create_view(std::string_view name, ObjectId whole, TexturePart part) {
-    const Texture& shared = textures_.at(whole);
-    Texture view(*device_, name, shared.name(), shared.desc(), part);
-    const ObjectId id = view.name();
-    textures_.emplace(id, std::move(view));
-    return id;
-}
-
 void GraphBackend::destroy_texture(ObjectId texture) {
     // A framebuffer would keep the storage alive, and a later texture may get the same name.
     std::erase_if(framebuffers_,

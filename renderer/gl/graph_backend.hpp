@@ -28,7 +28,6 @@ class GraphBackend final : public Backend {
 
     ObjectId create_texture(std::string_view name, const TextureDesc& desc) override;
     ObjectId create_buffer(std::string_view name, const BufferDesc& desc) override;
-    ObjectId create_view(std::string_view name, ObjectId whole, TexturePart part) override;
     void destroy_texture(ObjectId texture) override;
     void destroy_buffer(ObjectId buffer) override;
     void barrier(Barrier bits) override;

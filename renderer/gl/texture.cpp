@@ -88,15 +88,6 @@ GLuint create_texture(const Functions& gl, TextureShape shape) {
     return name;
 }
 
-GLuint create_view(const Functions& gl, GLuint whole, const TextureDesc& desc, TexturePart part) {
-    const GLuint first_layer = part.layer == TexturePart::all_layers ? 0 : part.layer;
-    GLuint name = 0;
-    gl.GenTextures(1, &name);  // CreateTextures gives the name a target, which glTextureView does not accept
-    gl.TextureView(name, texture_target(desc.shape), whole, format_info(desc.format).internal, part.mip, 1,
-                   first_layer, desc.layers);
-    return name;
-}
-
 GLuint level_parameter(const Functions& gl, GLuint texture, GLenum what) {
     GLint value = 0;
     gl.GetTextureLevelParameteriv(texture, 0, what, &value);
@@ -174,14 +165,6 @@ Texture::Texture(Device& device, std::string_view label, const TextureDesc& desc
     gl().GetTextureParameteriv(name(), GL_TEXTURE_IMMUTABLE_FORMAT, &stored);
     if (stored != GL_TRUE) throw MemoryError(fmt::format("{}: no memory", called));
     set_bytes(byte_size(desc));
-    set_sampling();
-}
-
-Texture::Texture(Device& device, std::string_view label, GLuint whole, const TextureDesc& desc,
-                 TexturePart part)
-    : Object(device, ObjectKind::texture, create_view(device.gl(), whole, part_desc(desc, part), part),
-             label),
-      desc_(part_desc(desc, part)) {
     set_sampling();
 }
 

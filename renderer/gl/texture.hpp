@@ -32,10 +32,6 @@ class Texture : public Object {
     /// the texture or there is not enough memory.
     Texture(Device& device, std::string_view label, const TextureDesc& desc);
 
-    /// A view of a part of the texture named `whole`, whose storage `desc` describes, and which it shares.
-    /// Keeps the storage alive.
-    Texture(Device& device, std::string_view label, GLuint whole, const TextureDesc& desc, TexturePart part);
-
     [[nodiscard]] const TextureDesc& desc() const { return desc_; }
     [[nodiscard]] GLenum target() const { return texture_target(desc_.shape); }
     /// Size of a mip level in texels.

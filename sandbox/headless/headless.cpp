@@ -19,12 +19,6 @@ namespace {
 
 namespace fs = std::filesystem;
 
-GraphFormat graph_format(const fs::path& path) {
-    const std::string extension = tools::lower_extension(path);
-    if (extension == ".dot") return GraphFormat::dot;
-    return extension == ".json" ? GraphFormat::json : GraphFormat::text;
-}
-
 void require_none(const std::vector<std::string>& errors) {
     if (!errors.empty()) throw std::runtime_error(fmt::format("{}", fmt::join(errors, "; ")));
 }
@@ -104,7 +98,7 @@ void write_report(const Options& options, const tools::RunReport& report) {
 
 void write_graph(const Options& options, const Renderer& renderer) {
     if (options.describe_graph) {
-        tools::write_text(*options.describe_graph, renderer.describe(graph_format(*options.describe_graph)));
+        tools::write_text(*options.describe_graph, describe_text(renderer.description()));
     }
 }
 

@@ -77,7 +77,7 @@ void list_resources_of(GraphSelection& selection, const GraphDescription& graph)
 using Anchors = std::vector<std::optional<ImVec2>>;
 
 void draw_arc(const Anchors& anchors, const DescribedEdge& edge, float space, ImU32 colour, float thickness) {
-    if (edge.history || !anchors[edge.from] || !anchors[edge.to]) return;
+    if (edge.kind == DependencyKind::history || !anchors[edge.from] || !anchors[edge.to]) return;
     const ImVec2 from = *anchors[edge.from];
     const ImVec2 to = *anchors[edge.to];
     // The further apart, the further out, up to the space at the left.

@@ -23,9 +23,6 @@ class Memory final : public candela::Backend {
     candela::ObjectId create_buffer(std::string_view, const candela::BufferDesc& desc) override {
         return create(candela::byte_size(desc));
     }
-    candela::ObjectId create_view(std::string_view, candela::ObjectId, candela::TexturePart) override {
-        return create(0);
-    }
     void destroy_texture(candela::ObjectId texture) override { objects.erase(texture); }
     void destroy_buffer(candela::ObjectId buffer) override { objects.erase(buffer); }
     void barrier(candela::Barrier) override { passes += "barrier;"; }

@@ -2,8 +2,9 @@
 
 #include <doctest/doctest.h>
 
+#include <algorithm>
+#include <bit>
 #include <map>
-#include <set>
 #include <string>
 #include <vector>
 
@@ -65,33 +66,71 @@ std::vector<Event> unroll(const Graph& graph, const CompiledGraph& compiled, std
     return events;
 }
 
-TEST_CASE("graph: exactly those barriers are planned that some pair of accesses needs" *
-          doctest::test_suite("random")) {
+/// Two accesses that need a barrier between them, with the bit of the later one.
+struct Hazard {
+    std::size_t early = 0;
+    std::size_t late = 0;
+    Barrier bit = Barrier::none;
+};
+
+std::vector<Hazard> hazards_of(const std::vector<Event>& events) {
+    std::vector<Hazard> hazards;
+    for (const Event& early : events) {
+        for (const Event& late : events) {
+            const bool after_write = early.incoherent;
+            const bool after_read = !early.write && late.incoherent;
+            if (late.time > early.time && late.object == early.object && (after_write || after_read)) {
+                hazards.push_back({early.time, late.time, late.bit});
+            }
+        }
+    }
+    return hazards;
+}
+
+/// Whether each hazard has a barrier, of any bits, between its accesses. `positions`: bit i of it says
+/// whether a barrier comes before the pass at position i.
+bool suffice(std::uint32_t positions, std::size_t count, const std::vector<Hazard>& hazards) {
+    return std::ranges::all_of(hazards, [&](const Hazard& hazard) {
+        for (std::size_t time = hazard.early + 1; time <= hazard.late; ++time) {
+            if ((positions >> time % count & 1U) != 0) return true;
+        }
+        return false;
+    });
+}
+
+/// The smallest number of barriers that serves all hazards, found by trying all sets of positions.
+int fewest_barriers(std::size_t count, const std::vector<Hazard>& hazards) {
+    int fewest = static_cast<int>(count);
+    for (std::uint32_t positions = 0; positions < 1U << count; ++positions) {
+        if (std::popcount(positions) < fewest && suffice(positions, count, hazards)) {
+            fewest = std::popcount(positions);
+        }
+    }
+    return fewest;
+}
+
+TEST_CASE(
+    "graph: every pair of accesses that needs a barrier has one, and there are hardly more than needed" *
+    doctest::test_suite("random")) {
     CHECK(rc::check([] {
-        const Graph graph = random_graph::make({});
+        const Graph graph = random_graph::make({.passes = 10});
         const CompiledGraph compiled = random_graph::compile(graph).take();
         const auto& barriers = compiled.plan().barrier;
         // A hazard spans at most two frames (with histories), so five frames show each hazard together with
         // the others.
-        const std::vector<Event> events = unroll(graph, compiled, 5);
-        std::vector<Barrier> needed(barriers.size(), Barrier::none);
-        for (const Event& early : events) {
-            for (const Event& late : events) {
-                const bool after_write = early.incoherent;
-                const bool after_read = !early.write && late.incoherent;
-                if (late.time <= early.time || late.object != early.object || !(after_write || after_read)) {
-                    continue;
-                }
-                std::set<std::size_t> between;
-                for (std::size_t time = early.time + 1; time <= late.time; ++time) {
-                    const std::size_t position = time % barriers.size();
-                    if ((barriers[position] & late.bit) == late.bit) between.insert(position);
-                }
-                RC_ASSERT(!between.empty());
-                if (between.size() == 1) needed[*between.begin()] = needed[*between.begin()] | late.bit;
+        const std::vector<Hazard> hazards = hazards_of(unroll(graph, compiled, 5));
+        for (const Hazard& hazard : hazards) {
+            bool served = false;
+            for (std::size_t time = hazard.early + 1; time <= hazard.late; ++time) {
+                served |= (barriers[time % barriers.size()] & hazard.bit) == hazard.bit;
             }
+            RC_ASSERT(served);
         }
-        RC_ASSERT(needed == barriers);
+        // Around the cycle of frames, barriers that each come as late as possible may be one more than
+        // needed.
+        const auto issued =
+            barriers.size() - static_cast<std::size_t>(std::ranges::count(barriers, Barrier::none));
+        RC_ASSERT(static_cast<int>(issued) <= fewest_barriers(barriers.size(), hazards) + 1);
     }));
 }
 
@@ -113,12 +152,14 @@ TEST_CASE("graph: one barrier covers all writes before it") {
     read("use b", b, Usage::uniform);
     read("draw b", b, Usage::vertex);
     const auto compiled = compile(std::move(graph)).take();
-    // "a" and "b" overwrite what the previous frame has read; one barrier covers both.
-    CHECK(compiled.plan().barrier == std::vector{Barrier::storage, Barrier::none, Barrier::uniform,
-                                                 Barrier::none, Barrier::vertex_attrib});
+    // The barrier between writes and reads serves all accesses up to the next frame's writes. These overwrite
+    // what this frame reads, and need a barrier of their own.
+    CHECK(compiled.plan().barrier == std::vector{Barrier::storage, Barrier::none,
+                                                 Barrier::uniform | Barrier::vertex_attrib, Barrier::none,
+                                                 Barrier::none});
 }
 
-TEST_CASE("graph: a barrier is kept if a pass between it and the next one needs it") {
+TEST_CASE("graph: passes are in an order in which two barriers serve them all") {
     FrameGraph graph;
     std::map<std::string, BufferHandle<int>> buffers;
     const auto write = [&](const std::string& name, std::size_t count) {
@@ -134,7 +175,7 @@ TEST_CASE("graph: a barrier is kept if a pass between it and the next one needs 
     write("a", 4);
     write("b", 4);
     read("a");
-    write("c", 64);  // of another size, so that it does not share memory with "a"
+    write("c", 64);
     read("c");
     read("b");
     const auto compiled = compile(std::move(graph)).take();
@@ -142,8 +183,8 @@ TEST_CASE("graph: a barrier is kept if a pass between it and the next one needs 
     for (const Barrier barrier : compiled.plan().barrier) {
         issued += barrier == Barrier::storage ? '|' : barrier == Barrier::none ? '.' : '?';
     }
-    // "a" needs no barrier: one comes after the previous frame has read it. But "b" does.
-    CHECK(issued == "|.|.|.");
+    // All are written, then all are read.
+    CHECK(issued == "|..|..");
 }
 
 TEST_CASE("graph: coherent writes need no barriers") {

@@ -46,8 +46,6 @@ TEST_CASE_FIXTURE(Find, "the description of a texture, by its handle") {
     CHECK(graph.desc(blank) == colour);
     CHECK(graph.desc(draw("surfaces", {}, blank)) == colour);
     CHECK(graph.desc(graph.history(blank)) == colour);
-    const TextureDesc levels{.size = {8, 4}, .mips = 3};
-    CHECK(graph.desc(graph.mip(graph.texture("levels", levels), 1)) == part_desc(levels, {.mip = 1}));
     CHECK_FALSE(graph.desc({}));
     FrameGraph other;
     CHECK_FALSE(graph.desc(other.texture("scene", colour)));
@@ -116,7 +114,7 @@ TEST_CASE_FIXTURE(Find, "the note on a resource, of the type that its producer c
     CHECK(*std::any_cast<int>(graph.find_texture("mean")->note) == 2);
 }
 
-TEST_CASE_FIXTURE(Find, "neither histories nor imports are found, and parts when all are written") {
+TEST_CASE_FIXTURE(Find, "neither histories nor imports are found") {
     const TextureHandle mean = texture("mean");
     const TextureHandle past = graph.history(mean);
     const TextureHandle host = texture("host", Lifetime::imported);
@@ -124,15 +122,6 @@ TEST_CASE_FIXTURE(Find, "neither histories nor imports are found, and parts when
     CHECK_FALSE(graph.find_texture("host"));
     const TextureHandle newest = draw("add", {past, host}, mean);
     CHECK(graph.find_texture("mean")->handle == newest);
-
-    const TextureHandle chain =
-        graph.texture("chain", {{8, 8}, Format::r32f, TextureShape::flat, 1, 2}, Lifetime::persistent);
-    const TextureHandle fine = draw("fine", {}, graph.mip(chain, 0));
-    const TextureHandle coarse = graph.mip(chain, 1);
-    CHECK(graph.find_texture("chain mip 0")->handle == fine);
-    CHECK_FALSE(graph.find_texture("chain"));
-    static_cast<void>(draw("coarse", {fine}, coarse));
-    CHECK(graph.find_texture("chain")->handle == chain);
 }
 }  // namespace
 

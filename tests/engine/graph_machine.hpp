@@ -1,10 +1,14 @@
 #pragma once
 
+#include <algorithm>
+#include <array>
 #include <cstdint>
 #include <map>
+#include <optional>
 #include <utility>
 #include <vector>
 
+#include "engine/graph/details/plan.hpp"
 #include "tests/engine/graph_random.hpp"
 #include "tests/engine/recording_backend.hpp"
 
@@ -19,11 +23,13 @@ inline Content mix(Content hash, Content value) {
 }
 
 /// The result of a pass, from the contents that `content_of(access)` returns for everything it reads or
-/// modifies, including histories.
-template <class ContentOf>
-Content evaluate(const Graph& graph, std::size_t pass, int number, ContentOf content_of) {
+/// modifies, including histories, and from `number_of(type)` of the components that it reads.
+template <class NumberOf, class ContentOf>
+Content evaluate(const Graph& graph, std::size_t pass, NumberOf number_of, ContentOf content_of) {
     Content hash = mix(1, pass);
-    if (graph.passes[pass].reads_world) hash = mix(hash, static_cast<Content>(number));
+    for (const ComponentAccess& access : graph.passes[pass].components) {
+        if (!access.write) hash = mix(hash, static_cast<Content>(number_of(access.type)));
+    }
     for (const Access& access : graph.passes[pass].accesses) {
         if (!access.write || access.version > 1) hash = mix(hash, content_of(access));
     }
@@ -35,21 +41,34 @@ inline Content result(const Resource& resource, std::size_t index, Content hash)
     return resource.kind == ResourceKind::value ? mix(hash, index) % 3 : mix(hash, index);
 }
 
-/// What the host provides.
+/// The component that a pass writes; one of few, for the same reason.
+inline int component_result(std::size_t type, Content hash) {
+    return static_cast<int>(mix(hash, ~type) % 3);
+}
+
+/// What the host provides, before each frame.
 struct Host {
-    int number = 0;
+    std::array<int, number_types> numbers{};
     std::vector<Content> imports;  // by resource
 };
+inline Host make_host(const Graph& graph) {
+    return {.imports = std::vector<Content>(graph.resources.size(), 1)};
+}
 
 /// The expected contents, by pass and by version of each resource, as declared.
 struct Meaning {
     std::vector<Content> passes;
     std::vector<std::vector<Content>> versions;
+    std::array<int, number_types> numbers{};  // at the end
 };
 
-/// `before` holds the contents of the histories; null in the first frame.
-inline Meaning meaning(const Graph& graph, const std::vector<std::uint32_t>& order, const Host& host,
-                       const Meaning* before) {
+/// What the passes that a graph has kept mean, evaluated in the order of their declaration, whatever the
+/// order in which they run. `before` holds the contents of the histories; null in the first frame.
+inline Meaning meaning(const Graph& graph, const CompiledGraph& compiled, const Host& host,
+                       const Meaning* before = nullptr) {
+    std::vector<std::uint32_t> order = compiled.plan().order;
+    std::ranges::sort(order);
+    std::array<int, number_types> numbers = host.numbers;
     Meaning now;
     now.passes.resize(graph.passes.size());
     for (std::size_t index = 0; index < graph.resources.size(); ++index) {
@@ -57,17 +76,22 @@ inline Meaning meaning(const Graph& graph, const std::vector<std::uint32_t>& ord
         now.versions.back().front() = host.imports[index];
     }
     for (const std::uint32_t pass : order) {
-        const Content hash = evaluate(graph, pass, host.number, [&](const Access& access) {
+        const auto number_of = [&](std::size_t type) { return numbers.at(type); };
+        const Content hash = evaluate(graph, pass, number_of, [&](const Access& access) {
             if (access.previous) return before ? before->versions[access.resource].back() : 0;
             return now.versions[access.resource][access.version - (access.write ? 1 : 0)];
         });
         now.passes[pass] = hash;
+        for (const ComponentAccess& access : graph.passes[pass].components) {
+            if (access.write) numbers.at(access.type) = component_result(access.type, hash);
+        }
         for (const Access& access : graph.passes[pass].accesses) {
             if (!access.write) continue;
             now.versions[access.resource][access.version] =
                 result(graph.resources[access.resource], access.resource, hash);
         }
     }
+    now.numbers = numbers;
     return now;
 }
 
@@ -86,13 +110,17 @@ class Machine {
         switch_to(graph);
     }
 
-    /// Goes on with another graph, whose resources are the same. It must outlive the machine.
-    void switch_to(const Graph& graph) {
+    /// Goes on with another graph, whose resources are the same. It must outlive the machine. With `shuffle`,
+    /// its passes run in another order.
+    void switch_to(const Graph& graph, std::optional<std::uint32_t> shuffle = {}) {
         graph_ = &graph;
         handles_ = {};
-        auto compiled = compile(declare(graph, handles_, [this](std::size_t pass, const auto& handles) {
-            return [this, pass, handles](Execution& run) { compute(run, pass, handles); };
-        }));
+        auto compiled =
+            compile(declare(graph, handles_,
+                            [this](std::size_t pass, const auto& handles) {
+                                return [this, pass, handles](Execution& run) { compute(run, pass, handles); };
+                            }),
+                    shuffle);
         runtime_.switch_to(std::move(compiled).take());
         bound_ = false;
         seen_.clear();
@@ -101,7 +129,8 @@ class Machine {
     /// Provides the host's inputs: values, and those of its objects that changed or that the graph has
     /// written.
     void provide(const Host& host) {
-        world_.set(entity_, Number{host.number});
+        world_.set(entity_, Number<0>{host.numbers[0]});
+        world_.set(entity_, Number<1>{host.numbers[1]});
         for (std::size_t index = 0; index < graph_->resources.size(); ++index) {
             const Resource& resource = graph_->resources[index];
             if (resource.lifetime != Lifetime::imported) continue;
@@ -133,6 +162,9 @@ class Machine {
         for (const auto& [pass, hash] : seen_) {
             RC_ASSERT(hash == expected.passes[pass]);
         }
+        for (std::size_t type = 0; type < number_types; ++type) {
+            RC_ASSERT(number(world_, type) == expected.numbers.at(type));
+        }
         for (const auto& [resource, object] : imported_) {
             RC_ASSERT(backend_.objects.at(object).content == expected.versions[resource].back());
         }
@@ -152,11 +184,17 @@ class Machine {
 
  private:
     void compute(Execution& run, std::size_t pass, const Handles& handles) {
-        const Content hash = evaluate(*graph_, pass, run.world().get<Number>(entity_).value,
-                                      [&](const Access& access) -> Content {
-                                          if (access.previous) return previous(run, access, handles);
-                                          return read(run, access.resource, handles.newest[access.resource]);
-                                      });
+        const Content hash = evaluate(
+            *graph_, pass, [&](std::size_t type) { return number(run.world(), type); },
+            [&](const Access& access) -> Content {
+                if (access.previous) return previous(run, access, handles);
+                return read(run, access.resource, handles.newest[access.resource]);
+            });
+        for (const ComponentAccess& access : graph_->passes[pass].components) {
+            if (!access.write) continue;
+            with_type(access.type,
+                      [&]<class C>(C) { run.set(entity_, C{component_result(access.type, hash)}); });
+        }
         for (const Access& access : graph_->passes[pass].accesses) {
             if (access.write) {
                 const Content content = result(graph_->resources[access.resource], access.resource, hash);
@@ -165,6 +203,10 @@ class Machine {
             }
         }
         if (graph_->passes[pass].side_effect) seen_[pass] = hash;
+    }
+
+    [[nodiscard]] int number(const World& world, std::size_t type) const {
+        return with_type(type, [&]<class C>(C) { return world.get<C>(entity_).value; });
     }
 
     ObjectId object(Execution& run, std::size_t resource, ResourceHandle handle) const {
@@ -206,7 +248,9 @@ class Machine {
 };
 
 inline void edit(Host& host) {
-    if (one_in(3)) host.number = static_cast<int>(choose(3));
+    for (int& number : host.numbers) {
+        if (one_in(3)) number = static_cast<int>(choose(3));
+    }
     for (Content& import : host.imports) {
         if (one_in(3)) import = 1 + choose(4);
     }

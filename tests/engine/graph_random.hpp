@@ -3,6 +3,7 @@
 #include <cstddef>
 #include <functional>
 #include <map>
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -15,11 +16,19 @@
 /// latter.
 namespace candela::random_graph {
 
-/// The component that passes of random graphs read from the world.
+/// The components that passes of random graphs read and write. One entity has one of each type.
+template <std::size_t Type>
 struct Number {
     int value = 0;
     bool operator==(const Number&) const = default;
 };
+inline constexpr std::size_t number_types = 2;
+
+/// Calls `act` with a Number of this type.
+template <class Act>
+decltype(auto) with_type(std::size_t type, Act act) {
+    return type == 0 ? act(Number<0>{}) : act(Number<1>{});
+}
 
 struct Resource {
     ResourceKind kind = ResourceKind::texture;
@@ -37,10 +46,15 @@ struct Access {
     bool previous = false;
 };
 
+struct ComponentAccess {
+    std::size_t type = 0;
+    bool write = false;
+};
+
 struct Pass {
     std::vector<Access> accesses{};
     bool side_effect = false;
-    bool reads_world = false;
+    std::vector<ComponentAccess> components{};  // at most one of each type
 };
 
 struct Graph {
@@ -80,6 +94,7 @@ inline Usage write_usage(ResourceKind kind) {
 struct Options {
     std::size_t passes = 16;
     bool histories = true;
+    bool systems = true;  // passes may write components
 };
 
 inline void add_access(Graph& graph, Pass& pass, const Options& options) {
@@ -130,7 +145,9 @@ inline Graph make(const Options& options) {
             add_access(graph, pass, options);
         }
         pass.side_effect = one_in(5);
-        pass.reads_world = one_in(4);
+        for (std::size_t type = 0; type < number_types; ++type) {
+            if (one_in(6)) pass.components.push_back({type, options.systems && one_in(2)});
+        }
         graph.passes.push_back(pass);
     }
     return graph;
@@ -201,17 +218,22 @@ FrameGraph declare(const Graph& graph, Handles& handles, MakeRun make_run) {
                 declare(declared, graph.resources[access.resource], access, handles);
             }
             if (pass.side_effect) declared.side_effect();
-            if (pass.reads_world) declared.read<Number>();
+            for (const ComponentAccess& access : pass.components) {
+                with_type(access.type, [&]<class C>(C) {
+                    if (access.write) return declared.write<C>();
+                    declared.read<C>();
+                });
+            }
             declared.run(make_run(index, handles));
         });
     }
     return frame;
 }
 
-inline CompileResult compile(const Graph& graph) {
+inline CompileResult compile(const Graph& graph, std::optional<std::uint32_t> shuffle = {}) {
     Handles handles;
     return candela::compile(
-        declare(graph, handles, [](std::size_t, const Handles&) { return [](Execution&) {}; }));
+        declare(graph, handles, [](std::size_t, const Handles&) { return [](Execution&) {}; }), shuffle);
 }
 
 }  // namespace candela::random_graph

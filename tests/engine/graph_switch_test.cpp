@@ -177,7 +177,7 @@ TEST_CASE_FIXTURE(Fixture, "graph switch: changes of the world between two graph
     start();
     world.set(world.create(), Light{});
     switch_to({.deferred = true});
-    CHECK(run() == "gather casters shadow-maps gbuffer deferred tone-map");
+    CHECK(run() == "gather casters gbuffer shadow-maps deferred tone-map");
 }
 
 TEST_CASE_FIXTURE(Fixture,

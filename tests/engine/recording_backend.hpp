@@ -37,14 +37,6 @@ class RecordingBackend final : public Backend {
     ObjectId create_buffer(std::string_view name, const BufferDesc& desc) override {
         return create({std::string(name), false, {}, desc});
     }
-    ObjectId create_view(std::string_view name, ObjectId whole, TexturePart part) override {
-        const auto found = objects.find(whole);
-        if (found == objects.end() || !found->second.texture) {
-            misuse = fmt::format("a view of object {}, which is no texture", whole);
-            return create({std::string(name), true, {}, {}});
-        }
-        return create({std::string(name), true, part_desc(found->second.texture_desc, part), {}});
-    }
     void destroy_texture(ObjectId texture) override { destroy(texture, true); }
     void destroy_buffer(ObjectId buffer) override { destroy(buffer, false); }
     void barrier(Barrier bits) override { log.push_back("barrier " + to_string(bits)); }

@@ -44,11 +44,11 @@ class Choices {
 void check_contents(Choices choices) {
     random_graph::choose = [&choices](std::size_t count) { return choices(count); };
     const random_graph::Graph graph = random_graph::make({.passes = 20, .histories = false});
-    random_graph::Host host{0, std::vector<random_graph::Content>(graph.resources.size(), 1)};
+    Host host = random_graph::make_host(graph);
     random_graph::Machine machine(graph);
     machine.runtime().set_verification(true);
     for (int frame = 0; frame < 3; ++frame) {
-        const auto expected = meaning(graph, machine.runtime().graph()->plan().order, host, nullptr);
+        const auto expected = meaning(graph, *machine.runtime().graph(), host);
         machine.provide(host);
         (void)machine.run();
         machine.check(expected);
@@ -102,17 +102,7 @@ class Declarer {
     void declare_derived() {
         const Handle handle = any_handle();
         if (const auto* const texture = std::get_if<TextureHandle>(&handle)) {
-            const auto part = static_cast<std::uint32_t>(choices_(4));
-            switch (choices_(3)) {
-                case 0:
-                    handles_.emplace_back(graph_.mip(*texture, part));
-                    return;
-                case 1:
-                    handles_.emplace_back(graph_.layer(*texture, part));
-                    return;
-                default:
-                    handles_.emplace_back(graph_.history(*texture));
-            }
+            handles_.emplace_back(graph_.history(*texture));
         }
     }
 

@@ -310,7 +310,7 @@ TEST_CASE_FIXTURE(RenderFixture, "the graph's description lists the passes of ea
         renderer.invalidate();
         static_cast<void>(render(scene, {4, 4}));
         std::string names;
-        const std::string text = renderer.describe(GraphFormat::text);
+        const std::string text = describe_text(renderer.description());
         std::size_t at = 0;
         for (const PassRecord& pass : renderer.last_passes()) {
             names += names.empty() ? "" : " ";
@@ -337,7 +337,7 @@ TEST_CASE_FIXTURE(RenderFixture,
                   "there are barriers only before passes that read or overwrite what shaders have stored") {
     const auto barriers_of = [&](ShadingPath path) {
         configure(linear_configuration(path));
-        std::istringstream text(renderer.describe(GraphFormat::text));
+        std::istringstream text(describe_text(renderer.description()));
         std::string barriers, pass;
         for (std::string line; std::getline(text, line) && line != "resources";) {
             if (line.starts_with("      barrier ")) {

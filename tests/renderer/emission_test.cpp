@@ -167,7 +167,7 @@ TEST_CASE_FIXTURE(EmissionFixture,
     CHECK(ran("emission"));
     scene.world.destroy(scene.light);
     CHECK(mean(render(scene, size)) == 0.0);
-    CHECK(renderer.describe(GraphFormat::text).find("emission") == std::string::npos);
+    CHECK(describe_text(renderer.description()).find("emission") == std::string::npos);
 }
 
 TEST_CASE_FIXTURE(EmissionFixture, "an emissive texture shines where it is bright") {

@@ -129,10 +129,10 @@ TEST_CASE_FIXTURE(ExtensionTests, "a pass of the host's is driven by its own com
     CHECK_FALSE(ran("deferred"));
     scene.world.destroy(knob);
     CHECK(frame() == usual);
-    CHECK(renderer.describe(GraphFormat::text).find("gain radiance") != std::string::npos);
+    CHECK(describe_text(renderer.description()).find("gain radiance") != std::string::npos);
     renderer.remove_extension("gain");
     CHECK(frame() == usual);
-    CHECK(renderer.describe(GraphFormat::text).find("gain") == std::string::npos);
+    CHECK(describe_text(renderer.description()).find("gain") == std::string::npos);
 }
 
 TEST_CASE_FIXTURE(ExtensionTests, "extensions follow each other, in all views and configurations") {
@@ -156,7 +156,7 @@ TEST_CASE_FIXTURE(ExtensionTests, "extensions follow each other, in all views an
                                         {.camera = scene.camera, .target = second.target()}};
     renderer.render(scene.world, views);
     CHECK(first.read() == second.read());
-    CHECK(renderer.describe(GraphFormat::text).find("triple 2") != std::string::npos);
+    CHECK(describe_text(renderer.description()).find("triple 2") != std::string::npos);
     // The same name replaces.
     REQUIRE(
         renderer.extend(scaling("triple", ExtensionPlace::before_tone_map, [](const World&) { return 0.5F; }))

@@ -115,30 +115,6 @@ TEST_CASE_FIXTURE(GlFixture, "a pass draws into its targets, from a known state"
     CHECK(backend.texture(depth).read_floats() == std::vector<float>(8, 0.5F));
 }
 
-TEST_CASE_FIXTURE(GlFixture, "views of parts of a texture share its storage, and may outlive it") {
-    GraphBackend backend(device);
-    const ObjectCounts before = device.live();
-    const ObjectId chain =
-        backend.create_texture("chain", {.size = {8, 4}, .format = Format::r32f, .mips = 3});
-    const ObjectId cubes = backend.create_texture(
-        "cubes", {.size = {4, 4}, .format = Format::r32f, .shape = TextureShape::cube_array, .layers = 12});
-    const std::uint64_t bytes = device.live().texture_bytes;
-    const std::array mip = {backend.create_view("mip", chain, {.mip = 2})};
-    const std::array face = {backend.create_view("face", cubes, {.layer = 7})};
-    CHECK(device.live().texture_bytes == bytes);
-    CHECK(backend.texture(mip[0]).desc() == TextureDesc{.size = {2, 1}, .format = Format::r32f});
-    clear_pass(device, backend, {.colour = mip, .size = {2, 1}}, 3.0F);
-    clear_pass(device, backend, {.colour = face, .size = {4, 4}}, 5.0F);
-    CHECK(backend.texture(chain).read_floats(2) == std::vector<float>(2, 3.0F));
-    CHECK(backend.texture(cubes).read_floats(0, 7) == std::vector<float>(16, 5.0F));
-    backend.destroy_texture(chain);
-    CHECK(backend.texture(mip[0]).read_floats() == std::vector<float>(2, 3.0F));
-    for (const ObjectId texture : {cubes, mip[0], face[0]}) {
-        backend.destroy_texture(texture);
-    }
-    CHECK(device.live() == before);
-}
-
 TEST_CASE_FIXTURE(GlFixture, "framebuffers are created once, and destroyed with their attachments") {
     GraphBackend backend(device);
     const TextureDesc desc{.size = {4, 4}, .format = Format::r32f};

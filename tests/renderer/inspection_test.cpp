@@ -95,7 +95,7 @@ Extension painting(const gl::Functions& gl, const TextureDesc& desc, Value value
             pass.run([=, &gl](Execution& run) {
                 const gl::FormatInfo info = gl::format_info(desc.format);
                 for (std::uint32_t mip = 0; mip < desc.mips; ++mip) {
-                    const glm::uvec2 texels = part_desc(desc, {.mip = mip}).size;
+                    const glm::uvec2 texels = glm::max(desc.size >> mip, glm::uvec2(1));
                     for (std::uint32_t layer = 0; layer < desc.layers; ++layer) {
                         std::vector<T> content;
                         for (std::uint32_t i = 0; i < texels.x * texels.y; ++i) {

@@ -148,7 +148,7 @@ TEST_CASE_FIXTURE(PrepareTests, "it changes neither the configuration nor the gr
     const Picture before = render(scene);
     static_cast<void>(render(scene));
     const Configuration configuration = renderer.configuration();
-    const std::string graph = renderer.describe(GraphFormat::text);
+    const std::string graph = describe_text(renderer.description());
     const auto ran = [&] {
         std::vector<std::string> names;
         for (const PassRecord& pass : renderer.last_passes()) {
@@ -162,7 +162,7 @@ TEST_CASE_FIXTURE(PrepareTests, "it changes neither the configuration nor the gr
     other.vpls.count *= 2;
     REQUIRE(prepare(other, rich_scene()).empty());
     CHECK(renderer.configuration() == configuration);
-    CHECK(renderer.describe(GraphFormat::text) == graph);
+    CHECK(describe_text(renderer.description()) == graph);
     CHECK(ran() == of_still_frame);
     CHECK(render(scene) == before);
     CHECK(ran() == of_still_frame);

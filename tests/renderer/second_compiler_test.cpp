@@ -221,7 +221,7 @@ TEST_CASE_FIXTURE(GlFixture, "glslang compiles every variant of every program") 
     ResourceInspector inspector(renderer);
     for (const char* const name : {"albedo", "integers", "light-clusters count"}) {
         REQUIRE(inspector.show(Inspection{.resource = name}).empty());
-        CHECK(renderer.describe(GraphFormat::text).find(name) != std::string::npos);
+        CHECK(describe_text(renderer.description()).find(name) != std::string::npos);
     }
     const gl::Texture picture(device, "picture", {{1, 1}, Format::rgba8});
     draw_difference(renderer, picture.name(), picture.name(), 1.0F, target.target());

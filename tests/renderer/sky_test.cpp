@@ -320,8 +320,8 @@ TEST_CASE_FIXTURE(SkyFixture, "light follows a sky that changes, turns or goes, 
     CHECK(ran("background"));
     scene.world.set(sky, Environment{});
     CHECK(mean(render(scene, size)) == 0.0);
-    CHECK(renderer.describe(GraphFormat::text).find("sky") == std::string::npos);
-    CHECK(renderer.describe(GraphFormat::text).find("background") == std::string::npos);
+    CHECK(describe_text(renderer.description()).find("sky") == std::string::npos);
+    CHECK(describe_text(renderer.description()).find("background") == std::string::npos);
 }
 
 TEST_CASE_FIXTURE(SkyFixture, "light of the sky is computed again only when another sample of it is shown") {

@@ -227,7 +227,7 @@ TEST_CASE("a click on a pass lists its resources, and a click on one of these sh
         {.name = "gbuffer", .gpu = true, .accesses = {{.resource = 1}, {.resource = 0, .write = true}}},
         {.name = "deferred", .gpu = true, .accesses = {{.resource = 0}, {.resource = 2}}},
         {.name = "inspect", .gpu = true}};
-    graph.edges = {{0, 1, false, {0}}, {1, 2, false, {0}}};
+    graph.edges = {{.from = 0, .to = 1}, {.from = 1, .to = 2}};
     GraphSelection selection;
     const PassCosts costs;
     Screen screen(in_panel([&] { draw_graph_panel(selection, graph, costs); }));

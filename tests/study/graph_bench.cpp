@@ -110,7 +110,6 @@ class Idle final : public Backend {
  public:
     ObjectId create_texture(std::string_view, const TextureDesc&) override { return ++created_; }
     ObjectId create_buffer(std::string_view, const BufferDesc&) override { return ++created_; }
-    ObjectId create_view(std::string_view, ObjectId, TexturePart) override { return ++created_; }
     void destroy_texture(ObjectId) override {}
     void destroy_buffer(ObjectId) override {}
     void barrier(Barrier) override {}

@@ -1,6 +1,7 @@
 #include <algorithm>
 #include <array>
 #include <bit>
+#include <utility>
 
 #include "engine/graph/details/plan.hpp"
 
@@ -8,12 +9,6 @@ namespace candela::detail {
 namespace {
 
 using Time = std::uint64_t;  // counts passes over all frames, from 1; 0 means never
-
-constexpr std::size_t bit_count = 10;
-
-std::size_t index_of(Barrier bit) {
-    return static_cast<std::size_t>(std::countr_zero(static_cast<std::uint32_t>(bit)));
-}
 
 /// The barrier bit that orders an access after incoherent writes.
 Barrier barrier_for(ResourceKind kind, Usage usage) {
@@ -41,13 +36,9 @@ Barrier barrier_for(ResourceKind kind, Usage usage) {
     return Barrier::none;
 }
 
-bool incoherent(const Access& access) {
-    return access.write && access.usage == Usage::storage;
-}
-
 bool any_incoherent(const Declaration& declared, const Plan& plan) {
     return std::ranges::any_of(plan.order, [&](std::uint32_t pass) {
-        return std::ranges::any_of(declared.accesses_of(pass), incoherent);
+        return std::ranges::any_of(declared.accesses_of(pass), &Access::is_incoherent);
     });
 }
 
@@ -80,14 +71,13 @@ class Timeline {
         const Resource& resource = declared_.resources[access.resource];
         if (resource.storage->kind == ResourceKind::value) return;
         const std::uint32_t object = object_of(access);
-        const Time since = std::max(wrote_[object], incoherent(access) ? read_[object] : 0);
-        if (since != 0)
-            need(position, now_, index_of(barrier_for(resource.storage->kind, access.usage)), since);
+        const Time since = std::max(wrote_[object], access.is_incoherent() ? read_[object] : 0);
+        if (since != 0) need(position, now_, barrier_for(resource.storage->kind, access.usage), since);
     }
 
     void note(const Access& access) {
         if (declared_.resources[access.resource].storage->kind == ResourceKind::value) return;
-        if (incoherent(access)) wrote_[object_of(access)] = now_;
+        if (access.is_incoherent()) wrote_[object_of(access)] = now_;
         if (!access.write) read_[object_of(access)] = now_;
     }
 
@@ -106,52 +96,74 @@ class Timeline {
     std::uint32_t frame_ = 0;
 };
 
+/// Plans the barriers of one frame after the other. Each serves all accesses up to the next one.
+class Planner {
+ public:
+    /// The barriers of a frame.
+    struct Frame {
+        std::vector<Barrier> before;          // per position
+        std::uint32_t last = none;            // position of the last one
+        Barrier of_previous = Barrier::none;  // bits that the last one of the previous frame needs for this
+    };
+
+    /// `timeline`: has followed frames until all hazards are known.
+    Planner(Timeline timeline, std::size_t positions)
+        : timeline_(std::move(timeline)), positions_(positions) {}
+
+    Frame plan_next() {
+        Frame frame{.before = std::vector<Barrier>(positions_, Barrier::none)};
+        timeline_.run_frame([&](std::uint32_t position, Time now, Barrier bit, Time since) {
+            Time& issued =
+                issued_.at(static_cast<std::size_t>(std::countr_zero(static_cast<std::uint32_t>(bit))));
+            if (issued > since) return;
+            if (last_ <= since) {
+                last_ = now;
+                frame.last = position;
+            }
+            issued = last_;
+            Barrier& serving = frame.last == none ? frame.of_previous : frame.before[frame.last];
+            serving = serving | bit;
+        });
+        return frame;
+    }
+
+ private:
+    Timeline timeline_;
+    std::size_t positions_;
+    Time last_ = 0;                  // when the last barrier was issued
+    std::array<Time, 10> issued_{};  // per bit: likewise
+};
+
 }  // namespace
 
 void plan_barriers(const Declaration& declared, Plan& plan) {
-    std::vector<Barrier>& barriers = plan.barrier;
-    barriers.assign(plan.order.size(), Barrier::none);
+    plan.barrier.assign(plan.order.size(), Barrier::none);
     if (!any_incoherent(declared, plan)) return;
 
     // The object of a history is overwritten two frames after it was written, so after two frames every
     // hazard is known.
     Timeline timeline(declared, plan);
-    const auto ignore = [](std::uint32_t, Time, std::size_t, Time) {};
+    const auto ignore = [](std::uint32_t, Time, Barrier, Time) {};
     timeline.run_frame(ignore);
     timeline.run_frame(ignore);
 
-    // Plan one frame as if no barrier came before it, and issue each barrier as late as possible. The result
-    // is valid for every frame.
-    struct Bit {
-        Time issued = 0;
-        std::uint32_t first = none;   // first position that issues it
-        std::uint32_t second = none;  // second position that issues it
-        std::uint32_t due = none;     // first position that needs it after the previous frame's barriers
-    };
-    std::array<Bit, bit_count> bits;
-    timeline.run_frame([&](std::uint32_t position, Time now, std::size_t index, Time since) {
-        Bit& bit = bits[index];
-        if (bit.issued > since) return;
-        bit.issued = now;
-        if (bit.first == none) {
-            bit.first = position;
-        } else if (bit.second == none) {
-            bit.second = position;
+    // A frame as if no barrier came before it is valid as every frame. One that follows another needs fewer,
+    // where the last barrier of the frame before serves it, too. It is valid as every frame if its own last
+    // barrier comes as late. If not, the next frame's comes still earlier: a few frames find the end of that.
+    Planner planner(std::move(timeline), plan.order.size());
+    const Planner::Frame first = planner.plan_next();
+    Planner::Frame previous = first;
+    for (int frame = 0; frame < 8; ++frame) {
+        Planner::Frame next = planner.plan_next();
+        if (next.last == none) next.last = previous.last;  // one barrier serves the whole frame
+        if (next.last >= previous.last) {
+            next.before[next.last] = next.before[next.last] | next.of_previous;
+            plan.barrier = std::move(next.before);
+            return;
         }
-        barriers[position] = barriers[position] | static_cast<Barrier>(1U << index);
-    });
-
-    // Only the first barrier of a bit can be redundant: the last one of the previous frame may serve instead.
-    timeline.run_frame([&](std::uint32_t position, Time, std::size_t index, Time since) {
-        Bit& bit = bits[index];
-        if (bit.issued <= since) bit.due = std::min(bit.due, position);
-    });
-    for (std::size_t index = 0; index < bit_count; ++index) {
-        const Bit& bit = bits[index];
-        if (bit.second == none || bit.due < bit.second) continue;
-        barriers[bit.first] =
-            static_cast<Barrier>(static_cast<std::uint32_t>(barriers[bit.first]) & ~(1U << index));
+        previous = std::move(next);
     }
+    plan.barrier = first.before;
 }
 
 }  // namespace candela::detail

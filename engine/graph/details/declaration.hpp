@@ -56,11 +56,7 @@ struct Resource {
     std::uint32_t writer = none;      // the pass with the last declared write
     std::uint32_t history_of = none;  // for a history: the resource whose history it is
     std::uint32_t history = none;     // the resource that is this one's history
-    std::uint32_t part_of = none;     // for a part: the texture
-    TexturePart part;                 // and which part of it
-    std::uint32_t first_part = none;  // the parts of a texture are a linked list
-    std::uint32_t next_part = none;
-    std::uint32_t note = none;  // see FrameGraph::note
+    std::uint32_t note = none;        // see FrameGraph::note
     // Of a buffer; not a part of its storage, which buffers of several types may share.
     std::type_index element = typeid(void);
 
@@ -77,12 +73,15 @@ struct Access {
     bool write;
     bool update;          // a write that may leave parts of the previous frame's content
     std::uint32_t point;  // see Binding
+
+    /// Whether only a barrier lets others see what is written.
+    [[nodiscard]] bool is_incoherent() const { return write && usage == Usage::storage; }
 };
 
-struct ComponentRead {
-    std::string_view name;
-    Tick (*revision)(const World&);
-    bool operator==(const ComponentRead&) const = default;
+/// See Pass::after.
+struct After {
+    std::uint32_t pass;
+    std::uint32_t before;  // the pass that runs first
 };
 
 struct Parameter {
@@ -103,6 +102,7 @@ struct PassNode {
     std::uint32_t first_parameter = 0;
     bool side_effect = false;
     bool keeps_state = false;
+    bool writes_entities = false;
     std::uint32_t held_by = none;  // resource: FrameGraph::hold_passes
     std::uint32_t tag = 0;         // see Pass::tag
 };
@@ -115,7 +115,7 @@ struct Declaration {
     [[nodiscard]] std::span<const Access> accesses_of(std::uint32_t pass) const {
         return part(accesses, pass, &PassNode::first_access);
     }
-    [[nodiscard]] std::span<const ComponentRead> components_of(std::uint32_t pass) const {
+    [[nodiscard]] std::span<const ComponentAccess> components_of(std::uint32_t pass) const {
         return part(components, pass, &PassNode::first_component);
     }
     [[nodiscard]] std::span<const Parameter> parameters_of(std::uint32_t pass) const {
@@ -143,7 +143,8 @@ struct Declaration {
     bool declaring = false;                 // a pass
     std::vector<PassNode> passes;
     std::vector<Access> accesses;
-    std::vector<ComponentRead> components;
+    std::vector<ComponentAccess> components;
+    std::vector<After> after;  // in the order of `pass`
     std::vector<Parameter> parameters;
     std::vector<Resource> resources;
     std::vector<std::any> notes;

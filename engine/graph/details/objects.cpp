@@ -39,9 +39,6 @@ class Objects {
         const Resource& resource = declared_.resources[index];
         if (resource.history_of != none) return give(resource.history_of);
         if (plan_.object[index] != none) return;
-        if (resource.part_of != none) {
-            give(resource.part_of);  // first, as it must be created first
-        }
         if (resource.lifetime == Lifetime::transient) {
             std::uint32_t& free = free_[equal_[index]];
             plan_.object[index] = free != none ? take(free) : create(index);

@@ -56,7 +56,8 @@ void plan_objects(const Declaration& declared, Plan& plan);
 ///
 /// Between an incoherent write and each later access of the same object there must be a barrier with the bit
 /// of the later access (OpenGL 4.5, section 7.13.2); likewise between a read and each later incoherent write.
-/// One barrier serves all such pairs that it lies between.
+/// A barrier serves all such pairs that it lies between. Barriers are as few as they can be: each comes
+/// before the first pass that no earlier one serves, with the bits of all later accesses that it serves.
 void plan_barriers(const Declaration& declared, Plan& plan);
 
 }  // namespace candela::detail

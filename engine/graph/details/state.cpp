@@ -16,9 +16,12 @@ Step make_step(const Declaration& declared, const Plan& plan, std::uint32_t posi
               .barrier = plan.barrier[position],
               .side_effect = node.side_effect,
               .keeps_state = node.keeps_state,
+              .writes_world = node.writes_entities,
+              .writes_entities = node.writes_entities,
               .held_by = node.held_by == none ? none : plan.object[node.held_by]};
-    for (const ComponentRead& read : declared.components_of(pass)) {
-        step.revisions.push_back({read.revision});
+    for (const ComponentAccess& access : declared.components_of(pass)) {
+        step.revisions.push_back({access});
+        step.writes_world |= access.write;
     }
     for (const Access& access : declared.accesses_of(pass)) {
         const Resource& resource = declared.resources[access.resource];
@@ -45,12 +48,11 @@ Step make_step(const Declaration& declared, const Plan& plan, std::uint32_t posi
     return step;
 }
 
-Slot make_slot(const Declaration& declared, const Resource& resource) {
+Slot make_slot(const Resource& resource) {
     Slot slot;
     slot.storage = *resource.storage;
     slot.owned = slot.storage.kind != ResourceKind::value && resource.lifetime != Lifetime::imported;
-    slot.view = resource.part_of != none;
-    slot.declared = slot.view ? *declared.resources[resource.part_of].storage : slot.storage;
+    slot.declared = slot.storage;
     if (slot.owned && resource.lifetime == Lifetime::persistent) slot.key = resource.key;
     return slot;
 }
@@ -85,16 +87,10 @@ class StateTransfer {
     }
 
  private:
-    [[nodiscard]] bool alike(const Resource& resource, const Resource& old) const {
-        if (resource.key != old.key || *resource.storage != *old.storage ||
-            resource.lifetime != old.lifetime || (resource.history == none) != (old.history == none) ||
-            (resource.history_of == none) != (old.history_of == none) ||
-            (resource.part_of == none) != (old.part_of == none)) {
-            return false;
-        }
-        return resource.part_of == none ||
-               (resource.part == old.part &&
-                alike(declared_.resources[resource.part_of], old_declared_.resources[old.part_of]));
+    [[nodiscard]] static bool alike(const Resource& resource, const Resource& old) {
+        return resource.key == old.key && *resource.storage == *old.storage &&
+               resource.lifetime == old.lifetime && (resource.history == none) == (old.history == none) &&
+               (resource.history_of == none) == (old.history_of == none);
     }
 
     /// Matches persistent and imported resources by kind and key. The host must bind imported GPU objects
@@ -241,7 +237,7 @@ State make_state(const CompiledGraph& graph) {
         }
     }
     for (const std::uint32_t owner : plan.owner) {
-        state.slots.push_back(make_slot(declared, declared.resources[owner]));
+        state.slots.push_back(make_slot(declared.resources[owner]));
     }
     for (std::uint32_t index = 0; index < declared.resources.size(); ++index) {
         const bool imported = declared.resources[index].lifetime == Lifetime::imported;

@@ -4,6 +4,7 @@
 #include <memory>
 #include <string>
 #include <string_view>
+#include <typeindex>
 #include <utility>
 #include <vector>
 
@@ -19,14 +20,13 @@ using Stamp = std::uint64_t;
 /// The current state of one object: a texture, a buffer or a value.
 struct Slot {
     Storage storage;       // of an import, as bound; `reserve` may have changed the declared one
-    bool view = false;     // a part of another slot's texture, without storage of its own
     bool owned = false;    // created by the runtime; false for imports and for values
     bool changed = false;  // a value: the running pass may have changed the content of its version
     bool filled = false;   // written since it was created, or bound by the host
     ObjectId object = 0;
     Value value;
-    std::string key;   // of a persistent texture or buffer; empty for all others
-    Storage declared;  // of a part: that of the whole texture
+    std::string key;  // of a persistent texture or buffer; empty for all others
+    Storage declared;
 };
 
 /// One version of one resource.
@@ -51,9 +51,10 @@ struct Output {
     bool swaps_history;  // first write to a resource with a history, which is in the next slot: swap the two
 };
 
+/// A type of component that a pass reads or writes.
 struct Revision {
-    Tick (*of)(const World&);
-    Tick tick = 0;  // at the pass's last run
+    ComponentAccess access;
+    Tick tick = 0;  // of the type's components, after the pass's last run
 };
 
 struct Target {
@@ -89,6 +90,8 @@ struct Step {
     bool side_effect = false;
     bool writes_import = false;
     bool keeps_state = false;
+    bool writes_world = false;  // components or entities
+    bool writes_entities = false;
     std::uint32_t held_by = none;  // slot of the value that holds the pass: FrameGraph::hold_passes
     bool is_held = false;          // in this frame
     bool has_run = false;
@@ -102,8 +105,9 @@ struct State {
     std::vector<std::uint32_t> holds;    // per slot: the version that was written to it last, or none
     std::vector<std::uint8_t> turned;    // per slot: was swapped with its history in this frame
     std::vector<std::uint32_t> imports;  // resources that the host must provide
-    std::vector<std::uint8_t> need;      // scratch: per step, and one more for versions that no step makes
-    std::vector<Content> contents;       // per version id; empty without verification
+    std::vector<std::type_index> components_to_change;  // scratch: types that steps may change in this frame
+    std::vector<std::uint8_t> need;  // scratch: per step, and one more for versions that no step makes
+    std::vector<Content> contents;   // per version id; empty without verification
 
     [[nodiscard]] std::uint32_t step_count() const { return static_cast<std::uint32_t>(steps.size()); }
 };

@@ -15,7 +15,6 @@ std::size_t hash_of(const detail::Slot& slot) {
 }
 
 std::uint64_t byte_size(const detail::Slot& slot) {
-    if (slot.view) return 0;
     return slot.storage.kind == ResourceKind::texture ? byte_size(slot.storage.texture)
                                                       : byte_size(slot.storage.buffer);
 }
@@ -105,13 +104,7 @@ void GraphRuntime::provide_objects(const CompiledGraph& graph, detail::State& st
             if (!slot.owned || slot.object != 0) continue;
             available.provide(slot);
             if (slot.object != 0) continue;
-            const detail::Resource& resource = graph.declared().resources[graph.plan().owner[object]];
-            if (slot.view) {
-                const detail::Slot& whole = state.slots[graph.plan().object[resource.part_of]];
-                slot.object = backend_.create_view(resource.name, whole.object, resource.part);
-            } else {
-                create(slot, resource.name);
-            }
+            create(slot, graph.declared().resources[graph.plan().owner[object]].name);
             made.push_back(object);
         }
     } catch (...) {

@@ -29,9 +29,6 @@ class Gpu;
 struct Extension;         // <candela/extension.hpp>
 struct GraphDescription;  // <candela/graph/describe.hpp>
 
-/// Output of Renderer::describe: plain text, Graphviz DOT, or JSON.
-enum class GraphFormat : std::uint8_t { text, dot, json };
-
 /// How many shader programs are compiled, of how many that are needed. Returns whether to go on.
 using CompileProgress = std::function<bool(std::size_t done, std::size_t total)>;
 
@@ -173,8 +170,6 @@ class CANDELA_API Renderer {
 
     /// The frame graph of the current configuration: passes, resources and barriers.
     [[nodiscard]] GraphDescription description() const;
-    /// The same as text for readers, for Graphviz or as JSON.
-    [[nodiscard]] std::string describe(GraphFormat format) const;
 
     /// Quality of the last frame, the same for all views. `scale` is below 1 only to keep the frame within
     /// its budget; `interleave` is the factor n that was used in the first view.

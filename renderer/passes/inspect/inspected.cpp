@@ -17,7 +17,7 @@ Shown shown_texture(const TextureDesc& desc, const Inspection& wanted) {
                 .layer = std::min(wanted.layer, desc.layers - 1),
                 .mips = desc.mips,
                 .layers = desc.layers};
-    shown.extent = shown.texels = part_desc(desc, {.mip = shown.mip}).size;
+    shown.extent = shown.texels = glm::max(desc.size >> shown.mip, glm::uvec2(1));
     return shown;
 }
 

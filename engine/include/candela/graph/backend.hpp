@@ -53,9 +53,6 @@ class CANDELA_API Backend {
     /// Creates storage, whose content may be undefined. Must not return 0. `name` is for debugging.
     [[nodiscard]] virtual ObjectId create_texture(std::string_view name, const TextureDesc& desc) = 0;
     [[nodiscard]] virtual ObjectId create_buffer(std::string_view name, const BufferDesc& desc) = 0;
-    /// Creates a texture (see part_desc) that shares the storage of a part of `whole`, a texture that this
-    /// back end created. Destroyed by destroy_texture; before or after `whole`.
-    [[nodiscard]] virtual ObjectId create_view(std::string_view name, ObjectId whole, TexturePart part) = 0;
     virtual void destroy_texture(ObjectId texture) = 0;
     virtual void destroy_buffer(ObjectId buffer) = 0;
     /// Issued before begin_pass of the pass that needs it; never with Barrier::none.

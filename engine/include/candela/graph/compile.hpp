@@ -1,8 +1,10 @@
 #pragma once
 
 #include <cstddef>
+#include <cstdint>
 #include <memory>
 #include <optional>
+#include <string>
 #include <vector>
 
 #include <candela/api.hpp>
@@ -49,12 +51,28 @@ struct CANDELA_API CompileResult {
     [[nodiscard]] CompiledGraph take() &&;
 };
 
-/// Validates and culls the passes, which run in the order of declaration, then plans lifetimes, shared
-/// objects and barriers. Consumes the graph. Reports misuse in the result and does not throw for it; makes no
-/// GPU calls. Takes time linear in passes and accesses.
+/// Validates and culls the passes, puts them in order, and plans lifetimes, shared objects and barriers.
+/// Consumes the graph. Reports misuse in the result and does not throw for it; makes no GPU calls. Takes time
+/// nearly linear in passes and accesses.
 ///
-/// A pass is kept if it has side effects, if it writes an imported resource, or if a kept pass reads its
-/// result, modifies it in place or reads its history. All other passes are culled.
-[[nodiscard]] CANDELA_API CompileResult compile(FrameGraph&& graph);
+/// A pass is kept if it has side effects, if it writes components or an imported resource, or if a kept pass
+/// reads its result, modifies it in place or reads its history. All other passes are culled.
+///
+/// The order follows from what passes declare (DependencyKind lists why one runs before another). Where it
+/// is free, it is chosen for few barriers and short lifetimes. With `shuffle`, a seed, it is any other legal
+/// order: for tests, since a frame that depends on it has a pass with an undeclared input.
+[[nodiscard]] CANDELA_API CompileResult compile(FrameGraph&& graph,
+                                                std::optional<std::uint32_t> shuffle = {});
+
+/// Two passes that write the same type of component, of which nobody has said which comes first: the later
+/// declared one neither reads the type nor depends on the other, directly or through other passes.
+struct Ambiguity {
+    std::string component;
+    std::string first;   ///< name of the pass that was declared first, and runs first
+    std::string second;  ///< name of the other pass
+    bool operator==(const Ambiguity&) const = default;
+};
+/// For tests of a host's systems. Takes quadratic time.
+[[nodiscard]] CANDELA_API std::vector<Ambiguity> find_ambiguities(const CompiledGraph& graph);
 
 }  // namespace candela

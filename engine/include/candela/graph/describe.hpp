@@ -4,6 +4,7 @@
 #include <cstdint>
 #include <optional>
 #include <string>
+#include <string_view>
 #include <vector>
 
 #include <candela/api.hpp>
@@ -22,13 +23,21 @@ struct DescribedAccess {
     bool update = false;  ///< a write by Pass::update
 };
 
+/// Access of a pass to all components of a type.
+struct DescribedComponent {
+    std::string name;
+    bool write = false;
+    bool operator==(const DescribedComponent&) const = default;
+};
+
 struct DescribedPass {
     std::string name;
     bool gpu = false;  ///< uses textures or buffers, not only values and components
     bool side_effect = false;
-    Barrier barrier = Barrier::none;          ///< issued before the pass
-    std::vector<std::string> components{};    ///< names of those that it reads from the world
-    std::vector<DescribedAccess> accesses{};  ///< in the order of declaration
+    Barrier barrier = Barrier::none;               ///< issued before the pass
+    std::vector<DescribedComponent> components{};  ///< of the world, in the order of declaration
+    bool writes_entities = false;                  ///< creates or destroys them
+    std::vector<DescribedAccess> accesses{};       ///< in the order of declaration
 };
 
 struct DescribedResource {
@@ -37,19 +46,30 @@ struct DescribedResource {
     Lifetime lifetime = Lifetime::transient;
     TextureDesc texture{};    ///< of textures, as declared; or as it is now: GraphRuntime::describe
     BufferDesc buffer{};      ///< of buffers, likewise
-    std::string part_of{};    ///< of a part: the name of the texture; else empty
     std::uint32_t first = 0;  ///< positions of the first and the last pass that uses it
     std::uint32_t last = 0;
     std::optional<std::uint32_t> object{};          ///< number of its storage; none for values
     std::optional<std::uint32_t> history_object{};  ///< number of the storage of its history, if it has one
 };
 
-/// All that one pass needs of another: of this frame, or of the last one.
+/// Why one pass runs before another.
+enum class DependencyKind : std::uint8_t {
+    result,               ///< the later one reads or changes a resource that the earlier one has written
+    overwrite,            ///< it overwrites a resource that the earlier one reads
+    component_result,     ///< it reads components that the earlier one writes
+    component_overwrite,  ///< it writes components that the earlier one reads or writes
+    side_effect,          ///< both have side effects, which keep the order of declaration
+    after,                ///< Pass::after
+    history               ///< none: the `to` pass reads what the `from` pass wrote in the last frame
+};
+[[nodiscard]] CANDELA_API std::string_view to_string(DependencyKind kind);
+
+/// All reasons of one kind why a pass runs before another.
 struct DescribedEdge {
     std::size_t from = 0;  ///< indices in GraphDescription::passes
     std::size_t to = 0;
-    bool history = false;
-    std::vector<std::size_t> resources;  ///< indices in GraphDescription::resources
+    DependencyKind kind = DependencyKind::result;
+    std::vector<std::string> subjects{};  ///< names of the resources or components
     bool operator==(const DescribedEdge&) const = default;
 };
 
@@ -58,7 +78,8 @@ struct GraphDescription {
     std::vector<DescribedPass> passes;         ///< in the order in which they run
     std::vector<std::string> culled;           ///< names, in the order of declaration
     std::vector<DescribedResource> resources;  ///< those that the passes use, without histories
-    std::vector<DescribedEdge> edges;          ///< at most one of each kind from one pass to another
+    /// At most one of each kind from one pass to another, ordered by `to`.
+    std::vector<DescribedEdge> edges;
 };
 
 /// The same declaration always gives the same description.
@@ -67,13 +88,6 @@ struct GraphDescription {
 /// For example "texture 64x32 rgba16f, array of 3 layers, 2 mips".
 [[nodiscard]] CANDELA_API std::string storage_text(const DescribedResource& resource);
 
-/// A listing for readers and golden tests: all but the edges.
+/// A listing for readers and golden tests.
 [[nodiscard]] CANDELA_API std::string describe_text(const GraphDescription& graph);
-/// Graphviz source. Passes are boxes, rounded if they use neither textures nor buffers; edges to histories
-/// are dashed.
-[[nodiscard]] CANDELA_API std::string describe_dot(const GraphDescription& graph);
-/// The content of describe_text as a JSON document. The storage of a resource is also given by fields: its
-/// kind; of a texture format, shape, size, layers and mips; of a buffer count and stride in bytes.
-[[nodiscard]] CANDELA_API std::string describe_json(const GraphDescription& graph);
-
 }  // namespace candela

@@ -20,6 +20,7 @@ enum class ErrorCode : std::uint8_t {
     impossible_texture,   ///< a texture with a description that none can have
     duplicate_pass,       ///< two passes with the same name
     duplicate_resource,   ///< two persistent or imported resources with the same kind and name
+    unknown_pass,         ///< a pass is to run after one that was not declared before it
     nested_pass           ///< a pass added while another pass is being declared
 };
 

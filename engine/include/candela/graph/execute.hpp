@@ -64,6 +64,23 @@ class CANDELA_API Execution {
     /// read is not checked here, and the pass would miss changes.
     [[nodiscard]] const World& world() const { return world_; }
 
+    // Changes of the world, as by the functions of World with these names. A GraphError names the pass and
+    // the type if the pass has not declared that it writes it: Pass::write, write_entities.
+    template <Component C>
+    void set(Entity entity, C value) {
+        writable<C>().set(entity, std::move(value));
+    }
+    template <Component C, std::invocable<C&> F>
+    void edit(Entity entity, F&& change) {
+        writable<C>().template edit<C>(entity, std::forward<F>(change));
+    }
+    template <Component C>
+    void remove(Entity entity) {
+        writable<C>().template remove<C>(entity);
+    }
+    [[nodiscard]] Entity create();
+    void destroy(Entity entity);
+
     /// The back end's object that holds the resource in this frame. `reserve` may replace it.
     [[nodiscard]] ObjectId object(TextureHandle texture) const { return object_of(texture); }
     template <class T>
@@ -143,7 +160,15 @@ class CANDELA_API Execution {
 
  private:
     friend GraphRuntime;
-    Execution(GraphRuntime& runtime, const World& world) : runtime_(runtime), world_(world) {}
+    Execution(GraphRuntime& runtime, const World& world, World* writable)
+        : runtime_(runtime), world_(world), writable_(writable) {}
+
+    template <Component C>
+    [[nodiscard]] World& writable() const {
+        return writable(typeid(C), component_name<C>());
+    }
+    [[nodiscard]] World& writable(std::type_index component, std::string_view name) const;
+    [[nodiscard]] World& with_entities() const;
 
     [[nodiscard]] detail::Slot& slot(ResourceHandle handle, bool write) const;
     [[nodiscard]] ObjectId object_of(ResourceHandle resource) const;
@@ -157,6 +182,7 @@ class CANDELA_API Execution {
 
     GraphRuntime& runtime_;
     const World& world_;
+    World* writable_;  // the same; null if the host does not let passes change it
     const std::function<bool()>* wanted_ = nullptr;  // null: nobody is to be asked
     std::uint32_t position_ = 0;
     bool has_no_result_ = true;  // the running pass has no previous result that it could keep
@@ -230,7 +256,9 @@ class CANDELA_API GraphRuntime {
     /// of the last complete frame, also after an exception, but not if `switch_to` follows it.
     ///
     /// Changes of the world, and another world in its place, are detected by the revisions of the component
-    /// pools.
+    /// pools. With a const world, a graph whose passes change components or entities is a GraphError.
+    const FrameRecord& run(World& world, Timing timing = Timing::off,
+                           const std::function<bool()>& wanted = {});
     const FrameRecord& run(const World& world, Timing timing = Timing::off,
                            const std::function<bool()>& wanted = {});
 
@@ -250,9 +278,11 @@ class CANDELA_API GraphRuntime {
     /// before it have just written again, so the check also covers versions that later passes modify in place
     /// and transients whose object another resource uses later in the frame. Not run again are
     /// - passes with side effects and passes that write imports (they run in every frame),
+    /// - passes that change the world,
     /// - passes that read a history or have declared Pass::keeps_state,
     /// - passes that would overwrite a result of one of those, and
-    /// - passes with an input that has been overwritten and that only one of those could write again.
+    /// - passes with an input, components included, that has been overwritten and that only one of those
+    ///   could write again.
     ///
     /// `reserve` finds the capacity that it made before. PassRecord::verified is set; the rest of the frame's
     /// record stays. Transients that share objects may hold other content afterwards than without `verify`,
@@ -281,7 +311,12 @@ class CANDELA_API GraphRuntime {
 
  private:
     friend Execution;
+    const FrameRecord& run(const World& world, World* writable, Timing timing,
+                           const std::function<bool()>& wanted);
     void require_imports() const;
+    void require_no_systems() const;
+    [[nodiscard]] bool follows_system(const detail::Step& step) const;
+    void note_system(const detail::Step& step);
     void mark(const World& world, std::uint32_t from);
     void mark_dirty(const World& world, std::uint32_t from);
     [[nodiscard]] bool mark_missing(std::uint32_t from);

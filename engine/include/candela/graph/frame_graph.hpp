@@ -28,6 +28,15 @@ namespace detail {
 
 struct Declaration;
 
+/// That a pass reads or writes all components of a type.
+struct ComponentAccess {
+    std::type_index type;
+    std::string_view name;
+    Tick (*revision)(const World&);
+    bool write;
+    bool operator==(const ComponentAccess&) const = default;
+};
+
 /// Compares two objects of type T.
 template <class T>
 [[nodiscard]] bool equal_as(const void* a, const void* b) {
@@ -113,12 +122,32 @@ class CANDELA_API Pass {
         declare_read(value, ResourceKind::value, {});
     }
 
-    /// The pass reads components of type C from the world (Execution::world). It runs again when a C of any
-    /// entity was added, changed or removed.
+    /// The pass reads components of type C from the world (Execution::world). It runs again when anybody but
+    /// itself has added, changed or removed a C.
     template <Component C>
     void read() {
-        declare_read(component_name<C>(), [](const World& world) { return world.revision<C>(); });
+        declare_component<C>(false);
     }
+
+    /// The pass is a system: it adds, changes or removes components of type C (Execution::set, edit, remove).
+    /// It is never culled. It runs again when anybody but itself has changed a C, so that what it writes
+    /// stays; it has to follow from what the pass reads, or running it twice would differ from once.
+    ///
+    /// Of passes that read or write the same type, those declared later see the changes of those declared
+    /// earlier in the same frame. If the order of two passes that write the same type matters, the later one
+    /// should also read it, or say `after`: see find_ambiguities.
+    template <Component C>
+    void write() {
+        declare_component<C>(true);
+    }
+
+    /// The pass creates or destroys entities (Execution::create, destroy). That counts as a write of every
+    /// type of component.
+    void write_entities();
+
+    /// The pass runs after another one, which has been declared before it and which it otherwise does not
+    /// depend on. `pass`: its name, with what FrameGraph::append_to_names has added.
+    void after(std::string_view pass);
 
     /// The pass writes the resource. Returns the handle of the version that it produces. Histories and
     /// imported values cannot be written.
@@ -183,7 +212,12 @@ class CANDELA_API Pass {
     Pass(detail::Declaration& declared, std::string_view name);
 
     void declare_read(ResourceHandle resource, ResourceKind kind, Binding binding);
-    void declare_read(std::string_view component, Tick (*revision)(const World&));
+    template <Component C>
+    void declare_component(bool write) {
+        declare_component(
+            {typeid(C), component_name<C>(), [](const World& world) { return world.revision<C>(); }, write});
+    }
+    void declare_component(const detail::ComponentAccess& access);
     [[nodiscard]] ResourceHandle declare_write(ResourceHandle resource, ResourceKind kind, Binding binding);
     [[nodiscard]] ResourceHandle declare_update(ResourceHandle resource, ResourceKind kind, Binding binding);
     void declare_parameter(std::type_index type, const void* value, bool (*equal)(const void*, const void*));
@@ -244,17 +278,6 @@ class CANDELA_API FrameGraph {
     [[nodiscard]] TextureHandle texture(std::string_view name, const TextureDesc& desc,
                                         Lifetime lifetime = Lifetime::transient);
 
-    /// A part of a texture as a resource of its own, with its own versions: one mip level (of all layers), or
-    /// one layer (of one mip level). Passes write and read it like a texture of its size, for example to fill
-    /// a chain of mip levels one from the other. Its name is the texture's and "mip 2", "layer 3" or "layer 3
-    /// mip 1". Asking for the same part again gives the same handle.
-    ///
-    /// A texture with parts is written only through them. A read of the texture reads the newest versions of
-    /// all its parts. Makes the texture persistent. Parts may not overlap. Imported textures and textures
-    /// with a history have no parts.
-    [[nodiscard]] TextureHandle mip(TextureHandle texture, std::uint32_t level);
-    [[nodiscard]] TextureHandle layer(TextureHandle texture, std::uint32_t layer, std::uint32_t mip = 0);
-
     /// A buffer of `count` elements of type `T`, sizeof(T) bytes apart.
     template <class T>
     [[nodiscard]] BufferHandle<T> buffer(std::string_view name, std::uint64_t count,
@@ -310,7 +333,7 @@ class CANDELA_API FrameGraph {
     }
 
  private:
-    friend CompileResult compile(FrameGraph&& graph);
+    friend CompileResult compile(FrameGraph&& graph, std::optional<std::uint32_t> shuffle);
 
     ResourceHandle add_buffer(std::string_view name, const BufferDesc& desc, std::type_index element,
                               Lifetime lifetime);

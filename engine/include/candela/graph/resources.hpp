@@ -65,19 +65,6 @@ struct TextureDesc {
 /// Bytes of all layers and mip levels, without driver overhead.
 [[nodiscard]] CANDELA_API std::uint64_t byte_size(const TextureDesc& desc);
 
-/// One mip level of all layers of a texture, or one layer of one mip level.
-struct TexturePart {
-    static constexpr std::uint32_t all_layers = 0xffff'ffffU;
-
-    std::uint32_t mip = 0;
-    std::uint32_t layer = all_layers;
-    bool operator==(const TexturePart&) const = default;
-};
-/// The part as a texture of its own, with one mip level; a single layer is flat.
-[[nodiscard]] CANDELA_API TextureDesc part_desc(const TextureDesc& whole, TexturePart part);
-/// For example "mip 2", "layer 3", "layer 3 mip 1".
-[[nodiscard]] CANDELA_API std::string to_string(TexturePart part);
-
 /// Storage of a buffer with `count` elements, `stride` bytes apart.
 struct BufferDesc {
     std::uint64_t count = 0;
