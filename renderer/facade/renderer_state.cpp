@@ -104,7 +104,8 @@ void require_possible(const Receiver& receiver, std::size_t index) {
 }  // namespace
 
 Renderer::State::State(const gl::GetProc& get_proc, const RendererOptions& options)
-    : gpu_(get_proc, shader_library(options.shader_directory), options),
+    : shuffle_(options.shuffle_passes),
+      gpu_(get_proc, shader_library(options.shader_directory), options),
       backend_(gpu_.device()),
       runtime_(backend_) {
     install(declare(configuration_, shape_, {}), configuration_, shape_, {});
@@ -166,7 +167,7 @@ Renderer::State::Declared Renderer::State::declare(const Configuration& configur
                                                    std::span<const Extension> extensions) {
     FrameGraph graph;
     FrameHandles frame = build_frame(graph, gpu_, configuration, shape, extensions);
-    return {compile(std::move(graph)).take(), std::move(frame)};
+    return {compile(std::move(graph), shuffle_).take(), std::move(frame)};
 }
 
 void Renderer::State::switch_to(const Configuration& configuration, const FrameShape& shape,

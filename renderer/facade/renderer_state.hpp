@@ -104,6 +104,7 @@ class CANDELA_PRIVATE Renderer::State {
     [[nodiscard]] std::optional<double> estimate_error(const ViewHandles& view) const;
     [[nodiscard]] LightReport report_lights(const ViewHandles& view) const;
 
+    std::optional<std::uint32_t> shuffle_;  // RendererOptions::shuffle_passes
     Gpu gpu_;
     gl::GraphBackend backend_;
     GraphRuntime runtime_;

@@ -88,6 +88,18 @@ GLuint create_texture(const Functions& gl, TextureShape shape) {
     return name;
 }
 
+/// The description of one layer of a mip level as a texture of its own.
+TextureDesc picture_desc(const TextureDesc& whole, std::uint32_t mip) {
+    return {.size = glm::max(whole.size >> mip, glm::uvec2(1)), .format = whole.format};
+}
+
+GLuint create_view(const Functions& gl, GLuint whole, Format format, std::uint32_t mip, std::uint32_t layer) {
+    GLuint name = 0;
+    gl.GenTextures(1, &name);  // CreateTextures gives the name a target, which glTextureView does not accept
+    gl.TextureView(name, GL_TEXTURE_2D, whole, format_info(format).internal, mip, 1, layer, 1);
+    return name;
+}
+
 GLuint level_parameter(const Functions& gl, GLuint texture, GLenum what) {
     GLint value = 0;
     gl.GetTextureLevelParameteriv(texture, 0, what, &value);
@@ -165,6 +177,13 @@ Texture::Texture(Device& device, std::string_view label, const TextureDesc& desc
     gl().GetTextureParameteriv(name(), GL_TEXTURE_IMMUTABLE_FORMAT, &stored);
     if (stored != GL_TRUE) throw MemoryError(fmt::format("{}: no memory", called));
     set_bytes(byte_size(desc));
+    set_sampling();
+}
+
+Texture::Texture(Device& device, std::string_view label, GLuint whole, const TextureDesc& desc,
+                 std::uint32_t mip, std::uint32_t layer)
+    : Object(device, ObjectKind::texture, create_view(device.gl(), whole, desc.format, mip, layer), label),
+      desc_(picture_desc(desc, mip)) {
     set_sampling();
 }
 

@@ -32,6 +32,11 @@ class Texture : public Object {
     /// the texture or there is not enough memory.
     Texture(Device& device, std::string_view label, const TextureDesc& desc);
 
+    /// A view of one layer of a mip level of the texture named `whole`, whose storage `desc` describes. It
+    /// shares that storage and keeps it alive.
+    Texture(Device& device, std::string_view label, GLuint whole, const TextureDesc& desc, std::uint32_t mip,
+            std::uint32_t layer);
+
     [[nodiscard]] const TextureDesc& desc() const { return desc_; }
     [[nodiscard]] GLenum target() const { return texture_target(desc_.shape); }
     /// Size of a mip level in texels.

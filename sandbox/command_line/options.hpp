@@ -44,7 +44,7 @@ struct Options {
 
     std::optional<std::filesystem::path> out;             ///< .png, .exr or .pfm; default: see picture_path
     std::optional<std::filesystem::path> report;          ///< .json
-    std::optional<std::filesystem::path> describe_graph;  ///< .txt, .dot or .json
+    std::optional<std::filesystem::path> describe_graph;  ///< .txt
     std::optional<std::filesystem::path> ui_log;          ///< .jsonl
     bool list_configs = false;
 };

@@ -6,6 +6,7 @@
 #include <fmt/format.h>
 #include <fmt/ranges.h>
 
+#include <candela/graph/describe.hpp>
 #include <candela/tools/output_file.hpp>
 #include "sandbox/animation/clips.hpp"
 #include "sandbox/command_line/messages.hpp"

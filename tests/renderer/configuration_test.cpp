@@ -13,6 +13,7 @@
 #include <type_traits>
 #include <vector>
 
+#include <candela/graph/describe.hpp>
 #include <candela/settings.hpp>
 #include "sandbox/files/shipped_file.hpp"
 #include "tests/renderer/scene_builder.hpp"
@@ -354,11 +355,6 @@ TEST_CASE_FIXTURE(RenderFixture,
           "framebuffer\n"
           "tone-map: texture fetch\n");
     CHECK(barriers_of(ShadingPath::forward) == "surfel-bounce: storage\nforward: storage\n");
-}
-
-TEST_CASE_FIXTURE(RenderFixture, "the graph's description is also available for Graphviz and as JSON") {
-    CHECK(renderer.describe(GraphFormat::dot).starts_with("digraph"));
-    CHECK(nlohmann::json::accept(renderer.describe(GraphFormat::json)));
 }
 
 }  // TEST_SUITE("configuration")

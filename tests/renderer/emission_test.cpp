@@ -9,6 +9,7 @@
 #include <numbers>
 #include <utility>
 
+#include <candela/graph/describe.hpp>
 #include "tests/area_lights.hpp"
 #include "tests/renderer/path_fixture.hpp"
 

@@ -14,6 +14,7 @@
 #include <vector>
 
 #include <candela/extension.hpp>
+#include <candela/graph/describe.hpp>
 #include <candela/graph/execute.hpp>
 #include <candela/scene/tangents.hpp>
 #include "renderer/facade/device_of.hpp"

@@ -6,8 +6,6 @@
 
 #include <doctest/doctest.h>
 
-#include <nlohmann/json.hpp>
-
 #include <array>
 #include <chrono>
 #include <map>
@@ -23,6 +21,7 @@
 #include <glm/vector_relational.hpp>
 
 #include <candela/gl_loader.hpp>
+#include <candela/graph/describe.hpp>
 
 #include "tests/renderer/path_fixture.hpp"
 
@@ -79,7 +78,7 @@ class Dispatches {
 /// What a pass did in a frame: its dispatches, and the sizes of the textures and buffers that it wrote.
 struct Work {
     Dispatches::Groups dispatches;
-    std::vector<nlohmann::json> written;
+    std::vector<std::pair<glm::uvec2, std::uint64_t>> written;  // texels of a texture, elements of a buffer
     Workload workload = Workload::other;
 };
 using PassWork = std::map<std::string, Work>;
@@ -193,24 +192,19 @@ class FrameBudgetTests : public PathFixture {
             frames = noted.take_frames(true);
         }
         CHECK(noted.report().rendered_size == (budget_ms > 0.0F ? lowest_size(target_size) : target_size));
-        return work_of(frames.back(), Dispatches::take(),
-                       nlohmann::json::parse(noted.describe(GraphFormat::json)));
+        return work_of(frames.back(), Dispatches::take(), noted.description());
     }
 
     static PassWork work_of(const FrameReport& frame, std::map<std::string, Dispatches::Groups> dispatches,
-                            const nlohmann::json& graph) {
-        std::map<std::string, nlohmann::json> sizes;
-        for (const auto& resource : graph["resources"]) {
-            sizes[resource["name"]] = {resource.value("size", nlohmann::json()),
-                                       resource.value("count", nlohmann::json())};
-        }
+                            const GraphDescription& graph) {
         PassWork work;
         for (std::size_t i = 0; i < frame.passes.size(); ++i) {
             const PassReport& pass = frame.passes[i];
             Work& done = work[pass.name];
             done = {.dispatches = std::move(dispatches[pass.name]), .written = {}, .workload = pass.workload};
-            for (const auto& write : graph["passes"][i]["writes"]) {
-                done.written.push_back(sizes[write["resource"]]);
+            for (const DescribedAccess& access : graph.passes[i].accesses) {
+                const DescribedResource& resource = graph.resources[access.resource];
+                if (access.write) done.written.emplace_back(resource.texture.size, resource.buffer.count);
             }
         }
         return work;

@@ -2,6 +2,7 @@
 
 #include <array>
 #include <cstdint>
+#include <optional>
 #include <string>
 #include <utility>
 #include <vector>
@@ -267,6 +268,29 @@ TEST_CASE_FIXTURE(GlFixture, "a sampler filters as described") {
     CHECK(parameter(GL_TEXTURE_MAG_FILTER) == GL_LINEAR);
     CHECK(parameter(GL_TEXTURE_WRAP_S) == GL_CLAMP_TO_EDGE);
     CHECK(parameter(GL_TEXTURE_WRAP_T) == GL_REPEAT);
+}
+
+TEST_CASE_FIXTURE(GlFixture,
+                  "a view of a layer of a mip level shares the texture's storage, and may outlive it") {
+    const ObjectCounts before = device.live();
+    {
+        std::optional<Texture> cubes(std::in_place, device, "cubes",
+                                     TextureDesc{.size = {8, 8},
+                                                 .format = Format::r32f,
+                                                 .shape = TextureShape::cube_array,
+                                                 .layers = 12,
+                                                 .mips = 3});
+        const std::uint64_t bytes = device.live().texture_bytes;
+        const Texture face(device, "face", cubes->name(), cubes->desc(), 1, 7);
+        CHECK(device.live().texture_bytes == bytes);
+        CHECK(face.desc() == TextureDesc{.size = {4, 4}, .format = Format::r32f});
+        const float five = 5.0F;
+        device.gl().ClearTexImage(face.name(), 0, GL_RED, GL_FLOAT, &five);
+        CHECK(cubes->read_floats(1, 7) == std::vector<float>(16, 5.0F));
+        cubes.reset();
+        CHECK(face.read_floats() == std::vector<float>(16, 5.0F));
+    }
+    CHECK(device.live() == before);
 }
 
 }  // TEST_SUITE("gl objects")

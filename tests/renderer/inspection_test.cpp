@@ -9,7 +9,6 @@
 #include <cmath>
 #include <cstring>
 #include <limits>
-#include <nlohmann/json.hpp>
 #include <optional>
 #include <string>
 #include <vector>
@@ -74,12 +73,10 @@ class InspectionTests : public PathFixture {
 };
 
 /// Names of the resources of a graph, without those of the inspection itself.
-std::vector<std::string> resources_of(const Renderer& renderer, std::string_view kind) {
+std::vector<std::string> resources_of(const Renderer& renderer, ResourceKind kind) {
     std::vector<std::string> names;
-    const auto json = nlohmann::json::parse(renderer.describe(GraphFormat::json));
-    for (const auto& resource : json["resources"]) {
-        const std::string name = resource["name"];
-        if (resource["kind"] == kind && !name.starts_with("inspect")) names.push_back(name);
+    for (const DescribedResource& resource : renderer.description().resources) {
+        if (resource.kind == kind && !resource.name.starts_with("inspect")) names.push_back(resource.name);
     }
     return names;
 }
@@ -422,13 +419,13 @@ TEST_CASE_FIXTURE(InspectionTests, "every resource of every path can be inspecte
         configuration.path = path;
         configure(configuration);
         static_cast<void>(render(scene, size));
-        for (const std::string& name : resources_of(renderer, "texture")) {
+        for (const std::string& name : resources_of(renderer, ResourceKind::texture)) {
             CAPTURE(name);
             const InspectionResult result = look(scene, {.resource = name, .longest = 64});
             CHECK((result.texture == 0) == (name == "target"));
             CHECK(result.high >= result.low);
         }
-        for (const std::string& name : resources_of(renderer, "buffer")) {
+        for (const std::string& name : resources_of(renderer, ResourceKind::buffer)) {
             CAPTURE(name);
             const InspectionResult result = look(scene, {.resource = name, .longest = 64});
             CHECK((result.texture != 0) == name.ends_with(" count"));

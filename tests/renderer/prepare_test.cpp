@@ -11,6 +11,7 @@
 #include <utility>
 #include <vector>
 
+#include <candela/graph/describe.hpp>
 #include "renderer/facade/device_of.hpp"
 #include "sandbox/files/shipped_file.hpp"
 #include "tests/compilations.hpp"

@@ -16,6 +16,7 @@
 #include <vector>
 
 #include <candela/extension.hpp>
+#include <candela/graph/describe.hpp>
 #include <candela/graph/frame_graph.hpp>
 #include <candela/inspection.hpp>
 #include <candela/scene/tangents.hpp>

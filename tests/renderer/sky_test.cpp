@@ -8,6 +8,7 @@
 #include <glm/geometric.hpp>
 #include <numbers>
 
+#include <candela/graph/describe.hpp>
 #include "renderer/passes/sky/sky_patches.hpp"
 #include "renderer/passes/view/refinement.hpp"
 #include "tests/renderer/path_fixture.hpp"

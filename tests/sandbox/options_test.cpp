@@ -118,7 +118,7 @@ TEST_CASE("every flag sets its option") {
                                       "--report",
                                       "r.json",
                                       "--describe-graph",
-                                      "g.dot",
+                                      "g.txt",
                                       "--list-configs"});
     CHECK(options.scene == "room.glb");
     CHECK(options.headless);
@@ -145,7 +145,7 @@ TEST_CASE("every flag sets its option") {
     CHECK(options.print_config);
     CHECK(options.out == "f%d.png");
     CHECK(options.report == "r.json");
-    CHECK(options.describe_graph == "g.dot");
+    CHECK(options.describe_graph == "g.txt");
     CHECK(options.list_configs);
 }
 
@@ -259,7 +259,7 @@ TEST_CASE("files must have a known format and be in an existing folder") {
     CHECK(accepted({"--out", "/tmp/a.pfm"}).out == "/tmp/a.pfm");
     check_refused_value("--out", {"a.jpg", "a", "png", ".png", "/dev/null", "no/such/folder/a.png"});
     check_refused_value("--report", {"a.txt", "no/such/folder/a.json"});
-    check_refused_value("--describe-graph", {"a.png", "no/such/folder/a.dot"});
+    check_refused_value("--describe-graph", {"a.png", "no/such/folder/a.txt"});
     check_refused_value("--config", {"no-such-file.json", "/tmp"});
 }
 

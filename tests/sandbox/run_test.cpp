@@ -45,7 +45,7 @@ TEST_CASE("a headless run writes the picture, the report and the graph") {
     options.samples = 2;
     options.out = folder / "a.pfm";
     options.report = folder / "a.json";
-    options.describe_graph = folder / "a.dot";
+    options.describe_graph = folder / "a.txt";
     REQUIRE(run(options) == 0);
     CHECK(folder.file_count() == 3);
 

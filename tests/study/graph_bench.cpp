@@ -78,13 +78,13 @@ Plans plans(Wiring reads) {
     return plans;
 }
 
-/// What the functions of the passes own.
-enum class Owned : std::uint8_t { nothing, vector };
+/// What is special about the passes: their functions own memory, or they write in a way that needs barriers.
+enum class Passes : std::uint8_t { plain, owning, storing };
 
 /// Every pass writes a texture. Passes whose result is not read have a side effect, so that nothing is
 /// culled.
 FrameGraph declare(const Plans& plans, std::vector<TextureHandle>& made, bool all_run,
-                   Owned owned = Owned::nothing) {
+                   Passes kind = Passes::plain) {
     FrameGraph graph;
     std::uint64_t ran = 0;
     for (std::size_t index = 0; index < plans.reads.size(); ++index) {
@@ -93,14 +93,15 @@ FrameGraph declare(const Plans& plans, std::vector<TextureHandle>& made, bool al
                 pass.read(made[read], Usage::sampled);
             }
             if (all_run || plans.unread[index]) pass.side_effect();
-            if (owned == Owned::vector) {
+            if (kind == Passes::owning) {
                 pass.run([list = std::vector{index}, ran](Execution&) mutable {
                     benchmark::DoNotOptimize(ran += list.front());
                 });
             } else {
                 pass.run([index, ran](Execution&) mutable { benchmark::DoNotOptimize(ran += index); });
             }
-            return pass.write(graph.texture("result", {{64, 64}, Format::rgba16f}), Usage::colour_target);
+            const Usage usage = kind == Passes::storing ? Usage::storage : Usage::colour_target;
+            return pass.write(graph.texture("result", {{64, 64}, Format::rgba16f}), usage);
         });
     }
     return graph;
@@ -130,11 +131,11 @@ void count(benchmark::State& state) {
         passes, benchmark::Counter::kIsIterationInvariantRate | benchmark::Counter::kInvert);
 }
 
-void build_and_compile(benchmark::State& state, Wiring (*wiring)(std::size_t), Owned owned = Owned::nothing) {
+void build_and_compile(benchmark::State& state, Wiring (*wiring)(std::size_t), Passes kind = Passes::plain) {
     const Plans plan = plans(wiring(static_cast<std::size_t>(state.range(0))));
     std::vector<TextureHandle> made(plan.reads.size());
     for (auto _ : state) {
-        benchmark::DoNotOptimize(compile(declare(plan, made, false, owned)));
+        benchmark::DoNotOptimize(compile(declare(plan, made, false, kind)));
     }
     count(state);
 }
@@ -161,7 +162,9 @@ void sizes(benchmark::internal::Benchmark* benchmark) {
 BENCHMARK_CAPTURE(build_and_compile, chain, chain)->Apply(sizes);
 BENCHMARK_CAPTURE(build_and_compile, random_dag, random_dag)->Apply(sizes);
 BENCHMARK_CAPTURE(build_and_compile, diamonds, diamonds)->Apply(sizes);
-BENCHMARK_CAPTURE(build_and_compile, owning_chain, chain, Owned::vector)->Apply(sizes);
+BENCHMARK_CAPTURE(build_and_compile, owning_chain, chain, Passes::owning)->Apply(sizes);
+BENCHMARK_CAPTURE(build_and_compile, storing_chain, chain, Passes::storing)->Apply(sizes);
+BENCHMARK_CAPTURE(build_and_compile, storing_dag, random_dag, Passes::storing)->Apply(sizes);
 BENCHMARK_CAPTURE(run_idle_passes, chain, chain)->Apply(sizes);
 BENCHMARK_CAPTURE(run_idle_passes, random_dag, random_dag)->Apply(sizes);
 BENCHMARK_CAPTURE(run_idle_passes, diamonds, diamonds)->Apply(sizes);

@@ -36,12 +36,6 @@ Barrier barrier_for(ResourceKind kind, Usage usage) {
     return Barrier::none;
 }
 
-bool any_incoherent(const Declaration& declared, const Plan& plan) {
-    return std::ranges::any_of(plan.order, [&](std::uint32_t pass) {
-        return std::ranges::any_of(declared.accesses_of(pass), &Access::is_incoherent);
-    });
-}
-
 /// Follows the accesses of every object through repeated frames. A resource and its history swap their two
 /// objects in each frame.
 class Timeline {
@@ -136,9 +130,15 @@ class Planner {
 
 }  // namespace
 
+bool any_incoherent(const Declaration& declared, const std::vector<std::uint32_t>& passes) {
+    return std::ranges::any_of(passes, [&](std::uint32_t pass) {
+        return std::ranges::any_of(declared.accesses_of(pass), &Access::is_incoherent);
+    });
+}
+
 void plan_barriers(const Declaration& declared, Plan& plan) {
     plan.barrier.assign(plan.order.size(), Barrier::none);
-    if (!any_incoherent(declared, plan)) return;
+    if (!any_incoherent(declared, plan.order)) return;
 
     // The object of a history is overwritten two frames after it was written, so after two frames every
     // hazard is known.

@@ -46,6 +46,9 @@ struct Plan {
     }
 };
 
+/// Whether any of these passes writes incoherently. Without such a pass there are no barriers.
+[[nodiscard]] bool any_incoherent(const Declaration& declared, const std::vector<std::uint32_t>& passes);
+
 // The last steps of compiling, once `plan` has its order and versions.
 
 /// Fills in lifetimes and objects. Transients of the same kind and description share an object if their

@@ -30,7 +30,8 @@ class Dependencies {
         for (const Access& access : declared_.accesses_of(pass)) {
             visit(pass, access);
         }
-        for (const bool write : {false, true}) {  // a pass that does both reads what the one before has written
+        for (const bool write :
+             {false, true}) {  // a pass that does both reads what the one before has written
             for (const ComponentAccess& access : declared_.components_of(pass)) {
                 if (access.write == write) visit(pass, *find_type(access.type), write);
             }
@@ -227,12 +228,15 @@ std::vector<Dependency> find_dependencies(const Declaration& declared, const Pla
 std::vector<std::uint32_t> schedule(const Declaration& declared, const Plan& plan,
                                     const std::vector<std::uint32_t>& kept,
                                     std::optional<std::uint32_t> shuffle) {
+    // Without barriers, no order is better than that of declaration, which is legal.
+    if (!shuffle && !any_incoherent(declared, kept)) return kept;
     std::vector<std::uint32_t> order;
     order.reserve(kept.size());
-    std::mt19937 random(shuffle.value_or(0));
     Scheduler scheduler(declared, find_dependencies(declared, plan, kept), kept);
+    std::optional<std::mt19937> random;
+    if (shuffle) random.emplace(*shuffle);
     while (!scheduler.is_done()) {
-        order.push_back(shuffle ? scheduler.take_any(random) : scheduler.take_next());
+        order.push_back(random ? scheduler.take_any(*random) : scheduler.take_next());
     }
     return order;
 }

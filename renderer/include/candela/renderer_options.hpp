@@ -1,6 +1,8 @@
 #pragma once
 
+#include <cstdint>
 #include <functional>
+#include <optional>
 #include <string>
 #include <string_view>
 
@@ -35,6 +37,10 @@ struct RendererOptions {
     /// takes about 300 state queries a frame. Off: nothing is asked or restored, and what the renderer has
     /// set stays, for hosts that set all state that they need; transform feedback must not be active.
     bool keeps_gl_state = true;
+    /// Passes run in another order than usual, one of those that their declarations allow, which follows from
+    /// this seed. For tests: if the picture is another one, a pass, perhaps the host's, has not declared what
+    /// it depends on.
+    std::optional<std::uint32_t> shuffle_passes{};
 };
 
 }  // namespace candela

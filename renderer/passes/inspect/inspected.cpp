@@ -112,7 +112,7 @@ InspectedTexels::InspectedTexels(Gpu& gpu, const Execution& run, const Inspected
                 {"depth_terms", shown.depth_terms.value_or(glm::vec4(0.0F))}} {
     if (inspected.texture) {
         view_ = gl::Texture(gpu.device(), "inspected", run.object(inspected.texture->handle), shown.desc,
-                            {.mip = shown.mip, .layer = shown.layer});
+                            shown.mip, shown.layer);
         view_.bind(UNIT_INSPECTED);
         gpu.nearest().bind(UNIT_INSPECTED);
     } else {
