@@ -95,9 +95,10 @@ void Ticks::take() {
 }
 
 void ChangeLog::drop_old(std::size_t components) {
-    const std::size_t kept = std::max(least, components / 4);
+    const std::size_t kept = std::max<std::size_t>(1024, components / 4);
     // Half of them at once, so that dropping one takes constant time in the mean.
-    if (changes_.size() < 2 * kept) return;
+    most_ = 2 * kept;
+    if (changes_.size() < most_) return;
     const auto end = changes_.end() - static_cast<std::ptrdiff_t>(kept);
     before_ = std::prev(end)->tick;
     changes_.erase(changes_.begin(), end);
@@ -118,7 +119,7 @@ void PoolBase::remove(std::uint32_t place, Tick now) {
     remove_value(place);
     move_last_to(ticks_, place);
     move_last_to(entities_, place);
-    note(entity, now);
+    changes_.add({now, entity}, entities_.size());
 }
 
 World::World(const World& other) : entities_(other.entities_), ticks_(other.ticks_) {

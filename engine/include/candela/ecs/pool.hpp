@@ -59,20 +59,21 @@ class CANDELA_API ChangeLog {
  public:
     /// `components`: how many the pool has.
     void add(Change change, std::size_t components) {
-        if (changes_.size() >= 2 * least) drop_old(components);
+        if (changes_.size() >= most_) drop_old(components);
         changes_.push_back(change);
     }
+    /// Tick of the last change; 0 if never.
+    [[nodiscard]] Tick last() const { return changes_.empty() ? 0 : changes_.back().tick; }
     /// All that came after the tick of a change, or after 0; nullopt if that change is not known any more or
     /// was never one of this pool. Valid until the next `add`.
     [[nodiscard]] std::optional<std::span<const Change>> since(Tick tick) const;
 
  private:
-    static constexpr std::size_t least = 1024;  // kept in any case
-
     void drop_old(std::size_t components);
 
     std::vector<Change> changes_;
-    Tick before_ = 0;  // tick of the last change that was dropped
+    Tick before_ = 0;          // tick of the last change that was dropped
+    std::size_t most_ = 2048;  // number of changes at which old ones are dropped
 };
 
 /// What a pool knows of its components without their type: the one at place i belongs to `entities()[i]`.
@@ -96,7 +97,7 @@ class CANDELA_API PoolBase {
     }
     /// Tick at which the component at a place last changed.
     [[nodiscard]] Tick changed_at(std::uint32_t place) const { return ticks_[place]; }
-    [[nodiscard]] Tick revision() const { return revision_; }
+    [[nodiscard]] Tick revision() const { return changes_.last(); }
     [[nodiscard]] const std::vector<Entity>& entities() const { return entities_; }
     [[nodiscard]] const ChangeLog& changes() const { return changes_; }
 
@@ -112,11 +113,11 @@ class CANDELA_API PoolBase {
         rows_[entity.index] = {static_cast<std::uint32_t>(entities_.size()), entity.generation};
         entities_.push_back(entity);
         ticks_.push_back(now);
-        note(entity, now);
+        changes_.add({now, entity}, entities_.size());
     }
-    void note_change(std::uint32_t place, Tick now) {
+    void note_change(std::uint32_t place, Entity entity, Tick now) {
         ticks_[place] = now;
-        note(entities_[place], now);
+        changes_.add({now, entity}, entities_.size());
     }
 
     template <class T>
@@ -134,15 +135,9 @@ class CANDELA_API PoolBase {
 
     virtual void remove_value(std::uint32_t place) = 0;
 
-    void note(Entity entity, Tick now) {
-        revision_ = now;
-        changes_.add({now, entity}, entities_.size());
-    }
-
     std::vector<Row> rows_;  // by entity index
     std::vector<Entity> entities_;
     std::vector<Tick> ticks_;
-    Tick revision_ = 0;
     ChangeLog changes_;
 };
 
@@ -152,6 +147,12 @@ class Pool final : public PoolBase {
  public:
     [[nodiscard]] std::unique_ptr<PoolBase> clone() const override { return std::make_unique<Pool>(*this); }
 
+    /// A pool of a world that has no C.
+    [[nodiscard]] static const Pool& none() {
+        static const Pool empty;
+        return empty;
+    }
+
     /// By place. Valid until the next change of the pool.
     [[nodiscard]] const std::vector<C>& values() const { return values_; }
 
@@ -160,13 +161,14 @@ class Pool final : public PoolBase {
         values_.push_back(std::move(value));
         note_insertion(entity, now);
     }
-    void replace(std::uint32_t place, C value, Tick now) {
+    /// `entity` has the component at the place.
+    void replace(std::uint32_t place, Entity entity, C value, Tick now) {
         values_[place] = std::move(value);
-        note_change(place, now);
+        note_change(place, entity, now);
     }
     /// The component, to be changed at tick `now`. Valid until the next change of the pool.
-    [[nodiscard]] C& change(std::uint32_t place, Tick now) {
-        note_change(place, now);
+    [[nodiscard]] C& change(std::uint32_t place, Entity entity, Tick now) {
+        note_change(place, entity, now);
         return values_[place];
     }
 

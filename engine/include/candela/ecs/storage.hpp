@@ -32,10 +32,9 @@ class Storage {
     using PoolOfC = std::conditional_t<std::is_const_v<C>, const Pool<Value>, Pool<Value>>;
 
  public:
-    Storage(const EntityTable& entities, PoolOfC& pool) requires std::is_const_v<C> : table_(&entities),
-                                                                                      pool_(&pool) {}
-    Storage(const EntityTable& entities, PoolOfC& pool, Ticks& ticks) requires(!std::is_const_v<C>)
-        : table_(&entities), pool_(&pool), ticks_(&ticks) {}
+    /// All of one world; `ticks` may be null if C is const.
+    Storage(const EntityTable& entities, PoolOfC& pool, Ticks* ticks)
+        : table_(&entities), pool_(&pool), ticks_(ticks) {}
 
     /// Null if the entity has no C. Valid until any C of the world changes.
     [[nodiscard]] const Value* find(Entity entity) const {
@@ -76,7 +75,7 @@ class Storage {
         if (at == PoolBase::absent) {
             pool_->insert(entity, std::move(value), ticks_->draw());
         } else if (!equal(pool_->values()[at], value)) {
-            pool_->replace(at, std::move(value), ticks_->draw());
+            pool_->replace(at, entity, std::move(value), ticks_->draw());
         }
     }
 
@@ -94,7 +93,7 @@ class Storage {
             std::forward<F>(change)(value);
             set(entity, std::move(value));
         } else {
-            std::forward<F>(change)(pool_->change(require(entity), ticks_->draw()));
+            std::forward<F>(change)(pool_->change(require(entity), entity, ticks_->draw()));
         }
     }
 
@@ -121,7 +120,7 @@ class Storage {
 
     const EntityTable* table_;
     PoolOfC* pool_;
-    Ticks* ticks_ = nullptr;  // null if C is const
+    Ticks* ticks_;
 };
 
 }  // namespace candela

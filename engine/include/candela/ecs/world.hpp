@@ -75,7 +75,7 @@ class CANDELA_API World : public WorldReads<World> {
     /// All components of type C, to be read and changed.
     template <Component C>
     [[nodiscard]] Storage<C> storage() {
-        return {entities_, pool<C>(), ticks_};
+        return {entities_, pool<C>(), &ticks_};
     }
 
  private:
@@ -96,10 +96,9 @@ class CANDELA_API World : public WorldReads<World> {
 
 template <Component C>
 const Pool<C>& World::pool() const {
-    static const Pool<C> none;
     const std::size_t index = component_index<C>();
-    const PoolBase* const pool = index < pools_.size() ? pools_[index].get() : nullptr;
-    return pool ? static_cast<const Pool<C>&>(*pool) : none;
+    if (index < pools_.size() && pools_[index]) return static_cast<const Pool<C>&>(*pools_[index]);
+    return Pool<C>::none();
 }
 
 template <Component C>

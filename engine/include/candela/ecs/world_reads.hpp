@@ -78,16 +78,16 @@ class WorldReads {
         return entities<C>().size();
     }
 
-    /// The entities that have every one of `Cs`; see View for the order and for what invalidates it.
-    template <Component... Cs>
-    requires(sizeof...(Cs) > 0) [[nodiscard]] View<Cs...> view() const {
-        return View<Cs...>(self().template pool<Cs>()...);
+    /// The entities that have every one of the types; see View for the order and for what invalidates it.
+    template <Component C, Component... Cs>
+    [[nodiscard]] View<C, Cs...> view() const {
+        return View<C, Cs...>(self().template pool<C>(), self().template pool<Cs>()...);
     }
 
     /// All components of type C; see Storage for how long it is valid.
     template <Component C>
     [[nodiscard]] Storage<const C> storage() const {
-        return {self().entity_table(), self().template pool<C>()};
+        return {self().entity_table(), self().template pool<C>(), nullptr};
     }
 
  private:
