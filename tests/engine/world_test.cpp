@@ -809,7 +809,8 @@ void apply_to_storage(const Edit& edit, World& world) {
 
 std::vector<Entity> changed_heights(const World& world) {
     std::vector<Entity> entities;
-    for (const Change& change : world.changes_since<Height>(0).value()) entities.push_back(change.entity);
+    const auto changes = world.changes_since<Height>(0);
+    for (const Change& change : changes.value()) entities.push_back(change.entity);
     return entities;
 }
 
