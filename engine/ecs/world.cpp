@@ -94,11 +94,10 @@ void Ticks::take() {
     end_ = last_ + many;
 }
 
-void ChangeLog::drop_old(std::size_t components) {
+void ChangeLog::make_room(std::size_t components) {
     const std::size_t kept = std::max<std::size_t>(1024, components / 4);
+    if (changes_.size() < 2 * kept) return changes_.reserve(std::min(2 * kept, 2 * changes_.size() + 16));
     // Half of them at once, so that dropping one takes constant time in the mean.
-    most_ = 2 * kept;
-    if (changes_.size() < most_) return;
     const auto end = changes_.end() - static_cast<std::ptrdiff_t>(kept);
     before_ = std::prev(end)->tick;
     changes_.erase(changes_.begin(), end);

@@ -59,7 +59,7 @@ class CANDELA_API ChangeLog {
  public:
     /// `components`: how many the pool has.
     void add(Change change, std::size_t components) {
-        if (changes_.size() >= most_) drop_old(components);
+        if (changes_.size() == changes_.capacity()) make_room(components);
         changes_.push_back(change);
     }
     /// Tick of the last change; 0 if never.
@@ -69,11 +69,10 @@ class CANDELA_API ChangeLog {
     [[nodiscard]] std::optional<std::span<const Change>> since(Tick tick) const;
 
  private:
-    void drop_old(std::size_t components);
+    void make_room(std::size_t components);
 
     std::vector<Change> changes_;
-    Tick before_ = 0;          // tick of the last change that was dropped
-    std::size_t most_ = 2048;  // number of changes at which old ones are dropped
+    Tick before_ = 0;  // tick of the last change that was dropped
 };
 
 /// What a pool knows of its components without their type: the one at place i belongs to `entities()[i]`.
