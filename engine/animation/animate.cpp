@@ -26,13 +26,11 @@ class ClipWriter {
 
     void write() {
         const auto& player = world_.get<AnimationPlayer>(player_);
-        if (player.clip >= player.clips.size() || !player.clips[player.clip]) {
-            return report(fmt::format("its clip {} does not exist", player.clip));
-        }
+        const AnimationClip* const clip = played_clip(player);
+        if (!clip) return report(fmt::format("its clip {} does not exist", player.clip));
         if (!std::isfinite(player.time)) return report("its time is not finite");
-        const AnimationClip& clip = *player.clips[player.clip];
-        for (std::size_t i = 0; i < clip.channels.size(); ++i) {
-            const std::optional<std::string> fault = write_channel(player, clip, clip.channels[i]);
+        for (std::size_t i = 0; i < clip->channels.size(); ++i) {
+            const std::optional<std::string> fault = write_channel(player, *clip, clip->channels[i]);
             if (fault) report(fmt::format("channel {} of its clip {}: {}", i, player.clip, *fault));
         }
         finish_transform();
@@ -46,7 +44,8 @@ class ClipWriter {
     /// Returns what is wrong with it.
     std::optional<std::string> write_channel(const AnimationPlayer& player, const AnimationClip& clip,
                                              const AnimationChannel& channel) {
-        if (channel.target >= player.targets.size() || !world_.alive(player.targets[channel.target])) {
+        const std::vector<Entity>& targets = player.animations->targets;
+        if (channel.target >= targets.size() || !world_.alive(targets[channel.target])) {
             return fmt::format("its target {} no longer exists", channel.target);
         }
         if (channel.sampler >= clip.samplers.size()) {
@@ -54,7 +53,7 @@ class ClipWriter {
         }
         const AnimationSampler& sampler = clip.samplers[channel.sampler];
         if (!sampler.times || sampler.times->empty() || !sampler.values) return "its sampler has no keys";
-        const Entity target = player.targets[channel.target];
+        const Entity target = targets[channel.target];
         const std::size_t keys = values_needed(sampler, 1);
         const std::size_t components = channel.property == AnimatedProperty::morph_weights
                                            ? sampler.values->size() / keys
@@ -123,7 +122,7 @@ class ClipWriter {
 
 /// Of a player whose clip exists.
 void advance(AnimationPlayer& player, double seconds) {
-    const double end = player.clips[player.clip]->duration;
+    const double end = played_clip(player)->duration;
     player.time += seconds * player.speed;
     if (!std::isfinite(player.time)) return;
     if (player.looping) {
@@ -138,10 +137,6 @@ void advance(AnimationPlayer& player, double seconds) {
     player.time = std::clamp(player.time, 0.0, end);
 }
 
-bool has_clip(const AnimationPlayer& player) {
-    return player.clip < player.clips.size() && player.clips[player.clip];
-}
-
 }  // namespace
 
 AnimationFaults advance_animations(World& world, double seconds) {
@@ -151,7 +146,7 @@ AnimationFaults advance_animations(World& world, double seconds) {
     }
     AnimationFaults faults;
     for (const Entity entity : playing) {
-        if (has_clip(world.get<AnimationPlayer>(entity))) {
+        if (played_clip(world.get<AnimationPlayer>(entity))) {
             world.edit<AnimationPlayer>(entity, [&](AnimationPlayer& player) { advance(player, seconds); });
         }
         ClipWriter(world, entity, faults).write();

@@ -154,7 +154,7 @@ std::vector<Entity> moving_entities(const World& world) {
         add(skin.joints);
     }
     for (const auto& [entity, player] : world.view<AnimationPlayer>()) {
-        add(player.targets);
+        if (player.animations) add(player.animations->targets);
     }
     return entities;
 }
@@ -217,14 +217,14 @@ Json MotionWriter::describe_sampler(const AnimationSampler& sampler, std::size_t
             {"interpolation", name_of(sampler.interpolation)}};
 }
 
-bool MotionWriter::add_clip(const AnimationPlayer& player, const AnimationClip& clip) {
+bool MotionWriter::add_clip(const AnimationClip& clip, std::span<const Entity> targets) {
     Json channels = Json::array();
     Json samplers = Json::array();
     bool is_complete = true;
     for (const AnimationChannel& channel : clip.channels) {
-        const bool exists = channel.target < player.targets.size();
-        const auto node = exists ? node_of(player.targets[channel.target]) : std::nullopt;
-        const std::size_t components = node ? components_of(channel, player.targets[channel.target]) : 0;
+        const bool exists = channel.target < targets.size();
+        const auto node = exists ? node_of(targets[channel.target]) : std::nullopt;
+        const std::size_t components = node ? components_of(channel, targets[channel.target]) : 0;
         if (components == 0) {
             is_complete = false;
             continue;
@@ -247,11 +247,11 @@ bool MotionWriter::add_clip(const AnimationPlayer& player, const AnimationClip& 
     return is_complete;
 }
 
-bool MotionWriter::add_clips(const AnimationPlayer& player) {
+bool MotionWriter::add_clips(const Animations& animations) {
     bool is_complete = true;
-    for (const std::shared_ptr<const AnimationClip>& clip : player.clips) {
+    for (const std::shared_ptr<const AnimationClip>& clip : animations.clips) {
         if (!clip) throw SceneError("a clip does not exist");
-        is_complete &= add_clip(player, *clip);
+        is_complete &= add_clip(*clip, animations.targets);
     }
     return is_complete;
 }

@@ -44,7 +44,7 @@ class MotionWriter {
     std::optional<std::size_t> index_of(const Skin& skin);
 
     /// Adds the clips of a player, without channels whose targets are no nodes. Returns whether all are.
-    bool add_clips(const AnimationPlayer& player);
+    bool add_clips(const Animations& animations);
 
  private:
     using Floats = std::shared_ptr<const std::vector<float>>;
@@ -53,7 +53,7 @@ class MotionWriter {
     [[nodiscard]] std::size_t components_of(const AnimationChannel& channel, Entity target) const;
     [[nodiscard]] Json describe_sampler(const AnimationSampler& sampler, std::size_t components,
                                         bool is_weights);
-    bool add_clip(const AnimationPlayer& player, const AnimationClip& clip);
+    bool add_clip(const AnimationClip& clip, std::span<const Entity> targets);
 
     const World& world_;
     std::span<const Entity> nodes_;

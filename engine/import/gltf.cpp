@@ -35,12 +35,12 @@ std::vector<bool> used_meshes(const gltf::Document& document, const std::vector<
 
 void add_player(gltf::ReadAnimations animations, World& world, ImportReport& report) {
     if (animations.clips.empty()) return;
-    AnimationPlayer player;
-    player.clips = std::move(animations.clips);
-    for (const std::size_t target : animations.targets) player.targets.push_back(report.entities[target]);
+    Animations shared{std::move(animations.clips), {}};
+    for (const std::size_t target : animations.targets) shared.targets.push_back(report.entities[target]);
     report.entities.push_back(world.create());
     world.set(report.entities.back(), Name{"animations"});
-    world.set(report.entities.back(), std::move(player));
+    world.set(report.entities.back(),
+              AnimationPlayer{.animations = std::make_shared<const Animations>(std::move(shared))});
 }
 
 ImportReport create_entities(std::vector<gltf::StagedEntity> staged,

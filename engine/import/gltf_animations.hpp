@@ -11,7 +11,7 @@
 
 namespace candela::gltf {
 
-/// The animations of the scene. `targets` are those of AnimationPlayer, as indices into the staged entities.
+/// The animations of the scene. `targets` are those of Animations, as indices into the staged entities.
 struct ReadAnimations {
     std::vector<std::shared_ptr<const AnimationClip>> clips;
     std::vector<std::size_t> targets;

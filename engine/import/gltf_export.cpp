@@ -150,12 +150,13 @@ class WorldWriter {
     void write_animations(std::span<const Entity> without) {
         std::vector<Entity> players;
         for (const auto& [entity, player] : world_.view<AnimationPlayer>()) {
-            if (std::ranges::find(without, entity) == without.end()) players.push_back(entity);
+            const bool is_kept = std::ranges::find(without, entity) == without.end();
+            if (is_kept && player.animations) players.push_back(entity);
         }
         std::ranges::sort(players);
         for (const Entity entity : players) {
             const bool is_complete = gltf::naming(describe(world_, entity), [&] {
-                return motion_.add_clips(world_.get<AnimationPlayer>(entity));
+                return motion_.add_clips(*world_.get<AnimationPlayer>(entity).animations);
             });
             if (!is_complete) warn(entity, "its animations of what is no node are left out");
         }

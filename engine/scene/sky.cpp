@@ -12,7 +12,7 @@ constexpr float pi = std::numbers::pi_v<float>;
 
 }  // namespace
 
-Environment environment_of(const World& world,
+Environment environment_of(const WorldReader& world,
                            const std::function<bool(Entity, const Environment&)>& accepts) {
     for (const auto& [entity, environment] : world.view<Environment>()) {
         const bool shines = environment.radiance != glm::vec3(0.0F);

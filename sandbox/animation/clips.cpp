@@ -15,18 +15,19 @@ namespace candela::sandbox {
 namespace {
 
 std::optional<std::size_t> find_clip(const AnimationPlayer& player, const std::string& wanted) {
-    for (std::size_t clip = 0; clip < player.clips.size(); ++clip) {
-        if (player.clips[clip]->name == wanted) return clip;
+    const auto clips = clips_of(player);
+    for (std::size_t clip = 0; clip < clips.size(); ++clip) {
+        if (clips[clip]->name == wanted) return clip;
     }
     const std::optional<std::size_t> index = parse_index(wanted);
-    return index && *index < player.clips.size() ? index : std::nullopt;
+    return index && *index < clips.size() ? index : std::nullopt;
 }
 
 std::string list_clips(const World& world) {
     std::vector<std::string> names;
     for (const Entity entity : animation_players(world)) {
         const auto& player = world.get<AnimationPlayer>(entity);
-        for (std::size_t clip = 0; clip < player.clips.size(); ++clip) {
+        for (std::size_t clip = 0; clip < clips_of(player).size(); ++clip) {
             names.push_back(fmt::format("{} '{}'", clip, clip_name(player, clip)));
         }
     }
@@ -34,8 +35,8 @@ std::string list_clips(const World& world) {
 }
 
 double duration_of(const AnimationPlayer& player) {
-    if (player.clip >= player.clips.size()) return 0.0;
-    return static_cast<double>(player.clips[player.clip]->duration);
+    const AnimationClip* const clip = played_clip(player);
+    return clip ? static_cast<double>(clip->duration) : 0.0;
 }
 
 void resume(AnimationPlayer& player) {
@@ -52,8 +53,13 @@ std::vector<Entity> animation_players(const World& world) {
     return players;
 }
 
+std::span<const std::shared_ptr<const AnimationClip>> clips_of(const AnimationPlayer& player) {
+    if (!player.animations) return {};
+    return player.animations->clips;
+}
+
 std::string clip_name(const AnimationPlayer& player, std::size_t clip) {
-    const std::string& name = player.clips[clip]->name;
+    const std::string& name = clips_of(player)[clip]->name;
     return name.empty() ? fmt::format("clip {}", clip) : name;
 }
 

@@ -1,5 +1,7 @@
 #pragma once
 
+#include <memory>
+#include <span>
 #include <string>
 #include <vector>
 
@@ -17,6 +19,9 @@ inline constexpr double seconds_a_frame = 1.0 / 30.0;
 /// Makes each player play the clip of this name, or, if there is none, with this index, counted from 0.
 /// Throws SceneError that lists the clips if no player has it.
 void choose_clip(World& world, const std::string& wanted);
+
+/// The player's clips. Valid as long as its `animations`.
+[[nodiscard]] std::span<const std::shared_ptr<const AnimationClip>> clips_of(const AnimationPlayer& player);
 
 /// The name of one of the player's clips, or "clip 3" if it has none.
 [[nodiscard]] std::string clip_name(const AnimationPlayer& player, std::size_t clip);

@@ -338,10 +338,10 @@ void draw_playback(Playback& playback) {
 
 void draw_clip(World& world, Entity entity, ClipPlayback& clips) {
     AnimationPlayer player = world.get<AnimationPlayer>(entity);
-    if (player.clip >= player.clips.size()) return;
+    if (!played_clip(player)) return;
     ImGui::PushID(static_cast<int>(entity.index));
     if (ImGui::BeginCombo("clip", clip_name(player, player.clip).c_str())) {
-        for (std::size_t clip = 0; clip < player.clips.size(); ++clip) {
+        for (std::size_t clip = 0; clip < clips_of(player).size(); ++clip) {
             ImGui::PushID(static_cast<int>(clip));
             if (ImGui::Selectable(clip_name(player, clip).c_str(), clip == player.clip)) {
                 player.clip = clip;
@@ -361,7 +361,7 @@ void draw_clip(World& world, Entity entity, ClipPlayback& clips) {
         clips.seek(world, entity, player.time);
     }
     auto time = static_cast<float>(player.time);
-    if (slide("time, s", time, 0.0F, player.clips[player.clip]->duration, "in the clip")) {
+    if (slide("time, s", time, 0.0F, played_clip(player)->duration, "in the clip")) {
         clips.seek(world, entity, static_cast<double>(time));
     }
     ImGui::PopID();

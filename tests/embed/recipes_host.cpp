@@ -58,7 +58,8 @@ void run_recipes(candela::Renderer& renderer, const candela::gl::GetProc& get_pr
     const candela::Entity lamp = scene.lamp;
     const candela::Entity player = world.create();
     candela::AnimationPlayer still;
-    still.clips.push_back(std::make_shared<const candela::AnimationClip>());
+    still.animations = std::make_shared<const candela::Animations>(
+        candela::Animations{.clips = {std::make_shared<const candela::AnimationClip>()}, .targets = {}});
     world.set(player, still);
     const std::shared_ptr<const candela::Mesh> mesh = host::ground(0.2F, 0.5F);
     const host::Picture picture = host::make_picture(size);

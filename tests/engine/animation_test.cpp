@@ -52,8 +52,8 @@ struct Moving {
         clip.samplers.push_back(std::move(sampler));
         clip.channels.push_back({0, property, 0});
         AnimationPlayer playing;
-        playing.clips.push_back(std::make_shared<const AnimationClip>(std::move(clip)));
-        playing.targets.push_back(target);
+        playing.animations = std::make_shared<const Animations>(
+            Animations{{std::make_shared<const AnimationClip>(std::move(clip))}, {target}});
         world.set(player, playing);
     }
 
@@ -304,11 +304,12 @@ TEST_CASE("faults of players are told, and the rest still plays") {
     const auto fault_of = [&](const std::function<void(AnimationClip&, AnimationPlayer&)>& change) {
         World world = moving.world;
         AnimationPlayer player = world.get<AnimationPlayer>(moving.player);
-        AnimationClip clip = *player.clips[0];
+        AnimationClip clip = *player.animations->clips[0];
         clip.channels.insert(clip.channels.begin(),
                              clip.channels[0]);  // the one that is changed
         change(clip, player);
-        player.clips[0] = std::make_shared<const AnimationClip>(clip);
+        player.animations = std::make_shared<const Animations>(
+            Animations{{std::make_shared<const AnimationClip>(clip)}, player.animations->targets});
         world.set(moving.player, player);
         const AnimationFaults faults = advance_animations(world, 0.0);
         return faults.size() == 1 ? faults[0] : std::to_string(faults.size()) + " faults";

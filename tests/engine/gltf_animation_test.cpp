@@ -289,10 +289,11 @@ TEST_CASE("a translation, and the player of the scene") {
     CHECK(imported.report.warnings.empty());
     CHECK(imported.report.entities.back() == player_of(imported));
     const auto& player = imported.world.get<AnimationPlayer>(player_of(imported));
-    REQUIRE(player.clips.size() == 1);
-    CHECK(player.clips[0]->name == "open");
-    CHECK(player.clips[0]->duration == 2.0F);
-    CHECK(player.targets == std::vector<Entity>{imported.find("door")});
+    REQUIRE(player.animations);
+    REQUIRE(player.animations->clips.size() == 1);
+    CHECK(player.animations->clips[0]->name == "open");
+    CHECK(player.animations->clips[0]->duration == 2.0F);
+    CHECK(player.animations->targets == std::vector<Entity>{imported.find("door")});
     CHECK(player.playing);
     CHECK(player.looping);
     CHECK(player.time == 0.0);
@@ -428,18 +429,18 @@ TEST_CASE("skins, morph targets and animations come back") {
         CHECK(after.get<Skin>(figure).joints == std::vector<Entity>{report.entities[1], report.entities[2]});
         CHECK(after.get<DeformedMesh>(figure).vertices->at(0) == deformed(before));
 
-        const auto& player = after.get<AnimationPlayer>(report.entities.back());
-        const auto& old_player = before.world.get<AnimationPlayer>(player_of(before));
-        REQUIRE(player.clips.size() == 3);
+        const Animations& now = *after.get<AnimationPlayer>(report.entities.back()).animations;
+        const Animations& old_ones = *before.world.get<AnimationPlayer>(player_of(before)).animations;
+        REQUIRE(now.clips.size() == 3);
         for (std::size_t i = 0; i < 3; ++i) {
-            const AnimationClip& clip = *player.clips[i];
-            const AnimationClip& old_clip = *old_player.clips[i];
+            const AnimationClip& clip = *now.clips[i];
+            const AnimationClip& old_clip = *old_ones.clips[i];
             CHECK(clip.name == old_clip.name);
             CHECK(clip.duration == old_clip.duration);
             REQUIRE(clip.channels.size() == 1);
             CHECK(clip.channels[0].property == old_clip.channels[0].property);
-            CHECK(player.targets.at(clip.channels[0].target).index ==
-                  old_player.targets.at(old_clip.channels[0].target).index);
+            CHECK(now.targets.at(clip.channels[0].target).index ==
+                  old_ones.targets.at(old_clip.channels[0].target).index);
             CHECK(clip.samplers[0].interpolation == old_clip.samplers[0].interpolation);
             CHECK(*clip.samplers[0].times == *old_clip.samplers[0].times);
             CHECK(*clip.samplers[0].values == *old_clip.samplers[0].values);

@@ -323,7 +323,8 @@ TEST_CASE("what glTF cannot hold is named") {
     AnimationPlayer player;
     AnimationClip clip;
     clip.channels.push_back({0, AnimatedProperty::scale, 0});
-    player.clips.push_back(std::make_shared<const AnimationClip>(clip));
+    player.animations =
+        std::make_shared<const Animations>(Animations{{std::make_shared<const AnimationClip>(clip)}, {}});
     deformed.set(first_entity, player);
     CHECK(warnings(deformed) == Lines{"entity \"triangle\": its animations of what is no node are left out"});
 

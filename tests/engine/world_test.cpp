@@ -2,9 +2,13 @@
 
 #include <algorithm>
 #include <iterator>
+#include <limits>
 #include <map>
+#include <memory>
+#include <set>
 #include <stdexcept>
 #include <string>
+#include <thread>
 #include <tuple>
 #include <type_traits>
 #include <utility>
@@ -12,6 +16,8 @@
 
 #include <doctest/doctest.h>
 #include <rapidcheck.h>
+
+#include <candela/ecs/world_reader.hpp>
 
 TEST_SUITE("world") {
 
@@ -33,12 +39,26 @@ struct Opaque {
     int value = 0;
 };
 
+/// Neither compared nor copied bit by bit.
+struct Heavy {
+    int value = 0;
+    std::shared_ptr<int> copies = std::make_shared<int>(0);
+
+    explicit Heavy(int of) : value(of) {}
+    Heavy(const Heavy& other) : value(other.value), copies(other.copies) { ++*copies; }
+    Heavy(Heavy&&) noexcept = default;
+    Heavy& operator=(const Heavy& other) { return *this = Heavy(other); }
+    Heavy& operator=(Heavy&&) noexcept = default;
+    ~Heavy() = default;
+};
+
 template <class T>
 struct Tagged {};
 
 static_assert(component_name<Height>() == "Height");
 static_assert(component_name<int>() == "int");
 static_assert(component_name<Tagged<int>>() == "Tagged<int>");
+static_assert(std::forward_iterator<View<Height, Label>::Iterator>);
 static_assert(std::is_copy_constructible_v<World> && std::is_nothrow_move_constructible_v<World>);
 
 std::string message_of(const auto& misuse) {
@@ -327,6 +347,274 @@ TEST_CASE("world: a copy keeps entities and ticks, and is independent of the ori
     CHECK(moved.size() == 1);
 }
 
+TEST_CASE("world: each component type has a small number of its own, in all threads") {
+    const std::size_t height = component_index<Height>();
+    const std::size_t label = component_index<Label>();
+    CHECK(height != label);
+    CHECK(std::max(height, label) < 1000);
+    std::size_t elsewhere = height + 1;
+    std::thread([&] { elsewhere = component_index<Height>(); }).join();
+    CHECK(elsewhere == height);
+}
+
+TEST_CASE("world: what changes nothing takes no tick") {
+    World world;
+    const Entity entity = world.create();
+    world.set(entity, Height{1});
+    const Tick before = world.revision();
+    for (int i = 0; i < 1000; ++i) {
+        world.set(entity, Height{1});
+        world.edit<Height>(entity, [](Height&) {});
+        world.remove<Label>(entity);
+        world.destroy(world.create());
+    }
+    CHECK(world.revision() == before);
+    world.set(entity, Height{2});
+    CHECK(world.revision() == before + 1);
+}
+
+TEST_CASE("world: worlds that threads change at once have no tick in common") {
+    std::vector<World> worlds(4);
+    std::vector<std::vector<Tick>> ticks(worlds.size());
+    std::vector<std::thread> threads;
+    for (std::size_t i = 0; i < worlds.size(); ++i) {
+        threads.emplace_back([&world = worlds[i], &drawn = ticks[i]] {
+            const Entity entity = world.create();
+            for (int value = 0; value < 5000; ++value) {
+                world.set(entity, Height{value});
+                drawn.push_back(world.revision());
+            }
+        });
+    }
+    for (std::thread& thread : threads) thread.join();
+    std::set<Tick> all;
+    for (const std::vector<Tick>& drawn : ticks) {
+        CHECK(std::ranges::is_sorted(drawn));
+        all.insert(drawn.begin(), drawn.end());
+    }
+    CHECK(all.size() == 4 * 5000);
+}
+
+TEST_CASE("world: the ticks of copies ascend, and are not those of the original") {
+    World world;
+    const Entity entity = world.create();
+    std::set<Tick> all;
+    int value = 0;
+    for (int round = 0; round < 100; ++round) {
+        World copy = world;
+        for (World* const changed : {&world, &copy, &world}) {
+            const Tick before = changed->revision();
+            changed->set(entity, Height{++value});
+            CHECK(changed->revision() > before);
+            CHECK(all.insert(changed->revision()).second);
+        }
+        if (round % 2 == 0) world = std::move(copy);
+    }
+}
+
+TEST_CASE("world: what is costly to copy is edited where it is, and counts as changed in any case") {
+    World world;
+    const Entity entity = world.create();
+    world.set(entity, Heavy(1));
+    const Heavy* const component = world.find<Heavy>(entity);
+    const int copies = *component->copies;
+    const Tick first = world.revision<Heavy>();
+    world.edit<Heavy>(entity, [&](Heavy& heavy) {
+        CHECK(&heavy == component);
+        heavy.value = 2;
+    });
+    CHECK(component->value == 2);
+    CHECK(*component->copies == copies);
+    const Tick second = world.changed<Heavy>(entity);
+    CHECK(second > first);
+
+    const auto fail = [](Heavy& heavy) {
+        heavy.value = 3;
+        throw std::runtime_error("no");
+    };
+    CHECK_THROWS_WITH(world.edit<Heavy>(entity, fail), "no");
+    CHECK(component->value == 3);
+    CHECK(world.revision<Heavy>() > second);
+    CHECK(world.changes_since<Heavy>(first)->size() == 2);
+    CHECK_THROWS_AS(world.edit<Heavy>(world.create(), fail), EntityError);
+}
+
+TEST_CASE(
+    "world: an edit that throws changes nothing of what is copied bit by bit, though it cannot be compared") {
+    World world;
+    const Entity entity = world.create();
+    world.set(entity, Opaque{1});
+    const Tick before = world.revision();
+    const auto fail = [](Opaque& opaque) {
+        opaque.value = 2;
+        throw std::runtime_error("no");
+    };
+    CHECK_THROWS_WITH(world.edit<Opaque>(entity, fail), "no");
+    CHECK(world.get<Opaque>(entity).value == 1);
+    CHECK(world.revision() == before);
+}
+
+TEST_CASE("world: views of three types are ordered by the smallest pool, whichever it is") {
+    World world;
+    std::vector<Entity> all;
+    for (int i = 0; i < 30; ++i) {
+        all.push_back(world.create());
+        world.set(all.back(), Opaque{i});
+    }
+    for (std::size_t i = 30; i-- > 0;) {
+        if (i % 2 == 0) world.set(all[i], Label{std::to_string(i)});
+        if (i % 3 == 0) world.set(all[i], Height{static_cast<int>(i)});
+    }
+    const std::vector expected{all[24], all[18], all[12], all[6], all[0]};
+    CHECK(entities_of<Height, Label, Opaque>(world) == expected);
+    CHECK(entities_of<Opaque, Height, Label>(world) == expected);
+    CHECK(entities_of<Label, Opaque, Height>(world) == expected);
+    for (const auto [entity, opaque, label, height] : world.view<Opaque, Label, Height>()) {
+        CHECK(&opaque == world.find<Opaque>(entity));
+        CHECK(&label == world.find<Label>(entity));
+        CHECK(&height == world.find<Height>(entity));
+    }
+    const auto view = world.view<Opaque, Label>();
+    auto at = view.begin();
+    CHECK(std::get<Entity>(*at++) == all[28]);
+    CHECK(std::get<Entity>(*at) == all[26]);
+    CHECK(at != view.begin());
+    CHECK(std::ranges::distance(view) == 15);
+}
+
+TEST_CASE("world: a storage reads and changes what the world does") {
+    World world;
+    const Entity with = world.create();
+    const Entity without = world.create();
+    Storage<Height> heights = world.storage<Height>();
+    CHECK(heights.find(with) == nullptr);
+    heights.set(with, {1});
+    CHECK(world.get<Height>(with) == Height{1});
+    const Tick first = world.revision();
+    heights.set(with, {1});
+    CHECK(world.revision() == first);
+    heights.edit(with, [](Height& height) { height.metres = 2; });
+    CHECK(heights.get(with) == Height{2});
+    CHECK(&heights.get(with) == world.find<Height>(with));
+    CHECK(heights.changed(with) == world.changed<Height>(with));
+    CHECK(heights.revision() == world.revision());
+    CHECK(heights.changes_since(first)->size() == 1);
+    CHECK(heights.has(with));
+    CHECK_FALSE(heights.has(without));
+    CHECK(heights.changed(without) == 0);
+    CHECK_FALSE(heights.place(without));
+    CHECK(heights.entities()[heights.place(with).value()] == with);
+    heights.remove(without);
+    CHECK(message_of([&] { (void)heights.get(without); }) == "entity 1 (generation 1) has no Height");
+
+    const World& read = world;
+    const Storage<const Height> all = read.storage<Height>();
+    for (const auto [entity, height] : all) {
+        CHECK(entity == with);
+        CHECK(&height == all.find(with));
+    }
+    CHECK(read.storage<Label>().begin() == read.storage<Label>().end());
+
+    heights.remove(with);
+    CHECK_FALSE(world.has<Height>(with));
+    world.destroy(with);
+    CHECK_THROWS_AS(heights.set(with, {3}), EntityError);
+    CHECK_THROWS_AS(heights.remove(with), EntityError);
+    CHECK_THROWS_AS(heights.edit(with, [](Height&) {}), EntityError);
+    CHECK_THROWS_AS((void)heights.find(with), EntityError);
+    CHECK_THROWS_AS((void)heights.has(with), EntityError);
+    CHECK_THROWS_AS((void)heights.changed(with), EntityError);
+    CHECK_THROWS_AS((void)heights.place(with), EntityError);
+}
+
+TEST_CASE("world: an entity is created as a host hints, unless another has the index") {
+    World world;
+    CHECK(world.create({5, 7}) == Entity{5, 7});
+    CHECK(world.alive({5, 7}));
+    CHECK(world.size() == 1);
+    const Entity other = world.create({5, 9});
+    CHECK(other.index != 5);
+    CHECK(world.alive(other));
+    CHECK(world.alive(world.create(Entity{})));
+
+    world.destroy({5, 7});
+    CHECK(world.create({5, 3}) == Entity{5, 3});
+    CHECK_FALSE(world.alive({5, 7}));
+    world.destroy({5, 3});
+    const Entity next = world.create();
+    CHECK(next.index == 5);
+    CHECK(next.generation > 3);
+}
+
+TEST_CASE("world: no entity is created with a generation that none has") {
+    World world;
+    constexpr std::uint32_t last = std::numeric_limits<std::uint32_t>::max() - 2;
+    CHECK(message_of([&] {
+              (void)world.create({3, 2});
+          }) == "entity 3 (generation 2) cannot be created: no entity has that generation");
+    CHECK_THROWS_AS((void)world.create({3, 0}), EntityError);
+    CHECK_THROWS_AS((void)world.create({3, last + 2}), EntityError);
+    CHECK(world.size() == 0);
+
+    // The generations of index 0 are used up, so that only a hint can use it again.
+    world.destroy(world.create({0, last}));
+    CHECK(world.create().index != 0);
+    CHECK(world.create({0, 1}) == Entity{0, 1});
+}
+
+TEST_CASE("world: a reader of a world reads all that the world does") {
+    World world;
+    const Entity entity = world.create();
+    world.set(entity, Height{7});
+    world.set(entity, Label{"seven"});
+    const WorldReader reader = world;
+    CHECK(reader.alive(entity));
+    CHECK(reader.size() == 1);
+    CHECK(reader.find<Height>(entity) == world.find<Height>(entity));
+    CHECK(reader.get<Label>(entity) == Label{"seven"});
+    CHECK_FALSE(reader.has<Opaque>(entity));
+    CHECK(reader.changed<Height>(entity) == world.changed<Height>(entity));
+    CHECK(reader.revision<Label>() == world.revision());
+    CHECK(reader.changes_since<Height>(0)->size() == 1);
+    CHECK(reader.entities<Height>()[reader.place<Height>(entity).value()] == entity);
+    CHECK(reader.count<Height>() == 1);
+    CHECK(std::ranges::distance(reader.view<Height, Label>()) == 1);
+    CHECK(reader.storage<Height>().get(entity) == Height{7});
+    CHECK_THROWS_AS((void)reader.get<Opaque>(entity), EntityError);
+}
+
+TEST_CASE("world: a pass reads only components of types that it has declared") {
+    World world;
+    const Entity entity = world.create();
+    world.set(entity, Height{7});
+    world.set(entity, Label{"seven"});
+    std::vector<bool> declared(component_index<Height>() + 1);
+    declared[component_index<Height>()] = true;
+    const WorldReader reader(world, declared, "sums");
+    CHECK(reader.alive(entity));
+    CHECK(reader.get<Height>(entity) == Height{7});
+    CHECK(std::ranges::distance(reader.view<Height>()) == 1);
+    CHECK(reader.for_messages().get<Label>(entity) == Label{"seven"});
+
+    const auto refused = [&](const auto& read) {
+        CHECK_THROWS_WITH_AS(read(), "pass 'sums' reads Label components without having declared it",
+                             UndeclaredRead);
+    };
+    refused([&] { (void)reader.find<Label>(entity); });
+    refused([&] { (void)reader.get<Label>(entity); });
+    refused([&] { (void)reader.has<Label>(entity); });
+    refused([&] { (void)reader.changed<Label>(entity); });
+    refused([&] { (void)reader.revision<Label>(); });
+    refused([&] { (void)reader.changes_since<Label>(0); });
+    refused([&] { (void)reader.entities<Label>(); });
+    refused([&] { (void)reader.place<Label>(entity); });
+    refused([&] { (void)reader.count<Label>(); });
+    refused([&] { (void)reader.view<Height, Label>(); });
+    refused([&] { (void)reader.storage<Label>(); });
+    // The list need not be as long as there are types.
+    CHECK_THROWS_AS((void)WorldReader(world, {}, "none").count<Height>(), UndeclaredRead);
+}
+
 // The reference model: the contents of each component type, by entity, and all entities ever created.
 template <class C>
 using Column = std::map<Entity, C>;
@@ -501,6 +789,79 @@ TEST_CASE("world: after random edits it has the same content as a plain map" *
         const World copy = world;
         check_contents(copy, model, model.heights);
         check_contents(copy, model, model.labels);
+    }));
+}
+
+/// Does what a Storage can do through it.
+void apply_to_storage(const Edit& edit, World& world) {
+    switch (edit.action) {
+        case Action::set_height:
+            return world.storage<Height>().set(edit.entity, {edit.value});
+        case Action::edit_height:
+            return world.storage<Height>().edit(edit.entity,
+                                                [&](Height& height) { height.metres += edit.value; });
+        case Action::remove_height:
+            return world.storage<Height>().remove(edit.entity);
+        default:
+            return apply(edit, world);
+    }
+}
+
+std::vector<Entity> changed_heights(const World& world) {
+    std::vector<Entity> entities;
+    const auto changes = world.changes_since<Height>(0);
+    for (const Change& change : changes.value()) entities.push_back(change.entity);
+    return entities;
+}
+
+TEST_CASE("world: random edits through storages do what they do through the world" *
+          doctest::test_suite("random")) {
+    using Raw = std::tuple<std::uint8_t, std::uint8_t, std::uint8_t>;
+    CHECK(rc::check("storage equals world", [](const std::vector<Raw>& script) {
+        World world;
+        World through_storages;
+        Model model;
+        for (const auto& [action, pick, value] : script) {
+            const Edit edit = make_edit(action, pick, value, model);
+            step(edit, world, model);
+            if (edit.action == Action::create) {
+                (void)through_storages.create();
+            } else {
+                try {
+                    apply_to_storage(edit, through_storages);
+                } catch (const EntityError&) {  // as in `step`
+                }
+            }
+        }
+        RC_ASSERT(column_of<Height>(through_storages) == model.heights);
+        RC_ASSERT(entities_of<Height>(through_storages) == entities_of<Height>(world));
+        RC_ASSERT(changed_heights(through_storages) == changed_heights(world));
+    }));
+}
+
+TEST_CASE("world: entities created with random hints are those of a plain set" *
+          doctest::test_suite("random")) {
+    using Raw = std::tuple<bool, std::uint8_t, std::uint8_t>;
+    CHECK(rc::check("hints", [](const std::vector<Raw>& script) {
+        World world;
+        std::map<std::uint32_t, std::uint32_t> live;  // generation by index
+        for (const auto& [create, at, turn] : script) {
+            const Entity hint{at % 16U, 2U * turn + 1U};
+            const bool is_free = !live.contains(hint.index);
+            if (create) {
+                const Entity made = world.create(hint);
+                RC_ASSERT(is_free == (made == hint));
+                RC_ASSERT(live.emplace(made.index, made.generation).second);
+            } else if (!is_free) {
+                world.destroy({hint.index, live.at(hint.index)});
+                live.erase(hint.index);
+            } else {
+                const Entity made = world.create();
+                RC_ASSERT(live.emplace(made.index, made.generation).second);
+            }
+            RC_ASSERT(world.size() == live.size());
+            for (const auto& [index, generation] : live) RC_ASSERT(world.alive({index, generation}));
+        }
     }));
 }
 

@@ -71,7 +71,7 @@ void check_motion(World& world) {
     std::vector<Entity> players;
     for (const auto& [entity, player] : world.view<AnimationPlayer>()) players.push_back(entity);
     for (const Entity entity : players) {
-        const std::size_t clips = world.get<AnimationPlayer>(entity).clips.size();
+        const std::size_t clips = world.get<AnimationPlayer>(entity).animations->clips.size();
         for (std::size_t clip = 0; clip < std::min<std::size_t>(clips, 4); ++clip) {
             world.edit<AnimationPlayer>(entity, [&](AnimationPlayer& player) { player.clip = clip; });
             for (int frame = 0; frame < 3; ++frame) {

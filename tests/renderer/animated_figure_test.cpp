@@ -158,8 +158,9 @@ struct Stage : Scene {
                          {2, AnimatedProperty::rotation, 2},
                          {3, AnimatedProperty::morph_weights, 3}};
         AnimationPlayer playing;
-        playing.clips = {std::make_shared<const AnimationClip>(std::move(clip))};
-        playing.targets = {joints[0], joints[1], joints[2], sheet};
+        playing.animations = std::make_shared<const Animations>(
+            Animations{.clips = {std::make_shared<const AnimationClip>(std::move(clip))},
+                       .targets = {joints[0], joints[1], joints[2], sheet}});
         player = add(world, std::move(playing));
     }
 

@@ -3,7 +3,7 @@
 // All public headers.
 
 #include <candela/configuration.hpp>
-#include <candela/ecs/world.hpp>
+#include <candela/ecs/world_reader.hpp>
 #include <candela/error.hpp>
 #include <candela/gl_error.hpp>
 #include <candela/graph/compile.hpp>

@@ -38,8 +38,8 @@ struct Played {
     Played() {
         world.set(moved, Transform{});
         AnimationPlayer component;
-        component.clips = {straight("walk"), straight("")};
-        component.targets = {moved};
+        component.animations =
+            std::make_shared<const Animations>(Animations{{straight("walk"), straight("")}, {moved}});
         world.set(player, std::move(component));
     }
     [[nodiscard]] float x() const { return world.get<Transform>(moved).translation.x; }

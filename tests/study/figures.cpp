@@ -105,8 +105,8 @@ void add_figures(World& world, const FigureStudy& study) {
         const std::vector<Entity> skeleton = add_skeleton(world, figure);
         world.set(figure, Skin{skeleton, matrices});
         AnimationPlayer player;
-        player.clips = {study.own_clips ? sway(i) : shared};
-        player.targets = skeleton;
+        player.animations =
+            std::make_shared<const Animations>(Animations{{study.own_clips ? sway(i) : shared}, skeleton});
         player.time = 0.01 * i;
         world.set(figure, player);
     }

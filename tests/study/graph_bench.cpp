@@ -172,6 +172,10 @@ BENCHMARK_CAPTURE(run_idle_passes, diamonds, diamonds)->Apply(sizes);
 }  // namespace
 
 int candela::study::graph(int count, char** arguments) {
+    return run_benchmarks(count, arguments);
+}
+
+int candela::study::run_benchmarks(int count, char** arguments) {
     benchmark::Initialize(&count, arguments);
     if (benchmark::ReportUnrecognizedArguments(count, arguments)) return 2;
     benchmark::RunSpecifiedBenchmarks();

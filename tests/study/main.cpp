@@ -56,6 +56,12 @@ void add_graph(CLI::App& app, int& status, int count, char** arguments) {
         ->callback([=, &status] { status = graph(count - 1, arguments + 1); });
 }
 
+void add_world(CLI::App& app, int& status, int count, char** arguments) {
+    app.add_subcommand("world", "creating, changing and reading entities (Google Benchmark's flags)")
+        ->prefix_command()
+        ->callback([=, &status] { status = world(count - 1, arguments + 1); });
+}
+
 void add_shading(CLI::App& app, int& status) {
     CLI::App& part = *app.add_subcommand("shading", "forward against deferred, and a still frame");
     const auto scene = std::make_shared<std::filesystem::path>();
@@ -258,6 +264,7 @@ int run(int count, char** arguments) {
     app.require_subcommand(1);
     int status = 0;
     add_graph(app, status, count, arguments);
+    add_world(app, status, count, arguments);
     add_shading(app, status);
     add_frames(app, status);
     add_gather(app, status);

@@ -15,6 +15,11 @@ namespace candela::study {
 
 /// The cost of the frame graph itself. The arguments are those of Google Benchmark.
 int graph(int count, char** arguments);
+/// The cost of World, likewise.
+int world(int count, char** arguments);
+/// Runs the benchmarks that are registered; for those two.
+int run_benchmarks(int count, char** arguments);
+
 /// Compares forward with deferred shading, and measures a frame in which nothing changed.
 int shading(const std::filesystem::path& scene);
 

@@ -12,7 +12,7 @@
 namespace candela {
 namespace {
 
-void gather_directional_lights(const World& world, SceneCheck& check, const SceneMetrics& metrics,
+void gather_directional_lights(const WorldReader& world, SceneCheck& check, const SceneMetrics& metrics,
                                std::vector<LightTable::Entry>& entries) {
     gather_lights<DirectionalLight>(
         world, check, entries, [&](Entity entity, const DirectionalLight& light, const glm::mat4& matrix) {

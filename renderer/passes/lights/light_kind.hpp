@@ -9,7 +9,7 @@
 #include <variant>
 #include <vector>
 
-#include <candela/ecs/world.hpp>
+#include <candela/ecs/world_reader.hpp>
 #include <candela/graph/frame_graph.hpp>
 #include <candela/scene/hierarchy.hpp>
 #include <candela/scene/lights.hpp>
@@ -38,7 +38,7 @@ struct ShadowShape {
 /// and one shader file: shaders/lights/point_light.glsl and its siblings.
 struct LightKind {
     /// Appends the lights of this kind that are in the world and that `check` accepts.
-    void (*gather)(const World& world, SceneCheck& check, const SceneMetrics& metrics,
+    void (*gather)(const WorldReader& world, SceneCheck& check, const SceneMetrics& metrics,
                    std::vector<LightTable::Entry>& entries);
     /// Contains everything that the light may reach.
     LightBounds (*bounds)(const gpu::Light& light);
@@ -87,7 +87,7 @@ struct ParallelLight {
 /// Appends an entry for each light component of type C that `check` accepts: `make(entity, light,
 /// world_matrix)`.
 template <class C, class Make>
-void gather_lights(const World& world, SceneCheck& check, std::vector<LightTable::Entry>& entries,
+void gather_lights(const WorldReader& world, SceneCheck& check, std::vector<LightTable::Entry>& entries,
                    Make make) {
     WorldMatrices world_matrices(world);
     for (const auto& [entity, light] : world.view<C>()) {

@@ -16,7 +16,7 @@ bool emits(glm::vec3 intensity) {
     return intensity.r > 0.0F || intensity.g > 0.0F || intensity.b > 0.0F;
 }
 
-LightTable gather(const World& world, SceneCheck& check, const SceneMetrics& metrics) {
+LightTable gather(const WorldReader& world, SceneCheck& check, const SceneMetrics& metrics) {
     LightTable table;
     for (const LightKind* const kind : light_kinds) {
         kind->gather(world, check, metrics, table.entries);

@@ -24,7 +24,7 @@ LightTable::Entry point_entry(Entity entity, const PointLight& light, const glm:
             .casts_shadow = light.casts_shadow};
 }
 
-void gather_point_lights(const World& world, SceneCheck& check, const SceneMetrics& /*metrics*/,
+void gather_point_lights(const WorldReader& world, SceneCheck& check, const SceneMetrics& /*metrics*/,
                          std::vector<LightTable::Entry>& entries) {
     gather_lights<PointLight>(world, check, entries, point_entry);
 }

@@ -39,7 +39,7 @@ LightTable::Entry spot_entry(Entity entity, const SpotLight& light, const glm::m
             .casts_shadow = light.casts_shadow};
 }
 
-void gather_spot_lights(const World& world, SceneCheck& check, const SceneMetrics& /*metrics*/,
+void gather_spot_lights(const WorldReader& world, SceneCheck& check, const SceneMetrics& /*metrics*/,
                         std::vector<LightTable::Entry>& entries) {
     gather_lights<SpotLight>(world, check, entries, spot_entry);
 }

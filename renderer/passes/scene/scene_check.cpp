@@ -34,14 +34,14 @@ Fault SceneCheck::fault_in(const DeformedMesh& deformed, const Mesh& mesh) {
     });
 }
 
-bool SceneCheck::accepts(const World& world, Entity entity, const MeshInstance& instance) {
+bool SceneCheck::accepts(const WorldReader& world, Entity entity, const MeshInstance& instance) {
     if (!judge(world, entity, component_name<MeshInstance>(), fault_in(instance))) return false;
     const auto* const deformed = world.find<DeformedMesh>(entity);
     return deformed == nullptr ||
            judge(world, entity, component_name<DeformedMesh>(), fault_in(*deformed, *instance.mesh));
 }
 
-bool SceneCheck::accepts_at(const World& world, Entity entity, const MeshInstance& instance,
+bool SceneCheck::accepts_at(const WorldReader& world, Entity entity, const MeshInstance& instance,
                             const glm::mat4& matrix) {
     if (!accepts_at(world, entity, matrix)) return false;
     Finding& finding = findings_.at(instance.mesh.get());
@@ -62,7 +62,7 @@ void SceneCheck::forget_destroyed() {
     forget_at_ = 2 * findings_.size() + 64;
 }
 
-bool SceneCheck::judge(const World& world, Entity entity, std::string_view part, const Fault& fault) {
+bool SceneCheck::judge(const WorldReader& world, Entity entity, std::string_view part, const Fault& fault) {
     if (!fault) return true;
     const std::string whose = describe(world, entity) + (part.empty() ? "" : fmt::format(", {}", part));
     if (strictness_ == Strictness::strict) throw SceneError(fmt::format("{}: {}", whose, *fault));

@@ -8,7 +8,7 @@
 
 #include <glm/mat4x4.hpp>
 
-#include <candela/ecs/world.hpp>
+#include <candela/ecs/world_reader.hpp>
 #include <candela/scene/components.hpp>
 #include "engine/scene/check.hpp"
 #include "renderer/gpu/log.hpp"
@@ -26,17 +26,17 @@ class SceneCheck {
 
     /// Whether a component of the entity is rendered: an Environment or a light.
     template <Component C>
-    [[nodiscard]] bool accepts(const World& world, Entity entity, const C& component) {
+    [[nodiscard]] bool accepts(const WorldReader& world, Entity entity, const C& component) {
         return judge(world, entity, component_name<C>(), fault_in(component));
     }
     /// A MeshInstance is rendered only if the entity's DeformedMesh, if any, has no fault either.
-    [[nodiscard]] bool accepts(const World& world, Entity entity, const MeshInstance& instance);
+    [[nodiscard]] bool accepts(const WorldReader& world, Entity entity, const MeshInstance& instance);
     /// Whether anything of the entity is rendered, with this local-to-world matrix.
-    [[nodiscard]] bool accepts_at(const World& world, Entity entity, const glm::mat4& matrix) {
+    [[nodiscard]] bool accepts_at(const WorldReader& world, Entity entity, const glm::mat4& matrix) {
         return judge(world, entity, {}, fault_of(matrix));
     }
     /// The same for a MeshInstance, which has been accepted.
-    [[nodiscard]] bool accepts_at(const World& world, Entity entity, const MeshInstance& instance,
+    [[nodiscard]] bool accepts_at(const WorldReader& world, Entity entity, const MeshInstance& instance,
                                   const glm::mat4& matrix);
 
  private:
@@ -60,7 +60,8 @@ class SceneCheck {
     [[nodiscard]] const Fault& known_fault(const std::shared_ptr<const T>& of, Find find);
     void forget_destroyed();
     /// An empty `part` is the whole entity.
-    [[nodiscard]] bool judge(const World& world, Entity entity, std::string_view part, const Fault& fault);
+    [[nodiscard]] bool judge(const WorldReader& world, Entity entity, std::string_view part,
+                             const Fault& fault);
 
     Log* log_;
     Strictness strictness_;

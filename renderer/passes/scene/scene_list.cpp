@@ -21,7 +21,7 @@ Deformation deformation_of(const DeformedMesh& deformed) {
 
 /// All entities that have a C, as if each had just got it.
 template <Component C>
-std::vector<Change> all_of(const World& world) {
+std::vector<Change> all_of(const WorldReader& world) {
     std::vector<Change> all;
     for (const Entity entity : world.entities<C>()) all.push_back({0, entity});
     return all;
@@ -29,7 +29,7 @@ std::vector<Change> all_of(const World& world) {
 
 }  // namespace
 
-void SceneList::update(const World& world) {
+void SceneList::update(const WorldReader& world) {
     auto meshes = world.changes_since<MeshInstance>(meshes_at_);
     auto shapes = world.changes_since<DeformedMesh>(shapes_at_);
     auto transforms = world.changes_since<Transform>(transforms_at_);
@@ -70,7 +70,7 @@ void SceneList::clear() {
 
 /// Where a component goes, the pool moves the last one there. So the places with other entities than before
 /// are among the old and the new places of those that came or went.
-void SceneList::note_meshes(const World& world, std::span<const Change> changes) {
+void SceneList::note_meshes(const WorldReader& world, std::span<const Change> changes) {
     for (const Change& change : changes) {
         const std::uint32_t before = item_of(change.entity.index);
         if (before != none) touched_.push_back(before);
@@ -83,14 +83,14 @@ void SceneList::note_meshes(const World& world, std::span<const Change> changes)
     }
 }
 
-void SceneList::note_shapes(const World& world, std::span<const Change> changes) {
+void SceneList::note_shapes(const WorldReader& world, std::span<const Change> changes) {
     for (const Change& change : changes) {
         if (!world.alive(change.entity)) continue;
         if (const auto item = world.place<MeshInstance>(change.entity)) touched_.push_back(*item);
     }
 }
 
-void SceneList::note_transforms(const World& world, std::span<const Change> changes) {
+void SceneList::note_transforms(const WorldReader& world, std::span<const Change> changes) {
     ++round_;
     for (const Change& change : changes) {
         const auto* const transform =
@@ -114,7 +114,7 @@ void SceneList::touch_below(std::uint32_t entity) {
     }
 }
 
-void SceneList::refresh(const World& world, std::uint32_t item, WorldMatrices& matrices) {
+void SceneList::refresh(const WorldReader& world, std::uint32_t item, WorldMatrices& matrices) {
     const Entity entity = world.entities<MeshInstance>()[item];
     if (entity.index >= item_of_.size()) item_of_.resize(entity.index + std::size_t{1}, none);
     item_of_[entity.index] = item;

@@ -8,7 +8,7 @@
 
 #include <glm/mat4x4.hpp>
 
-#include <candela/ecs/world.hpp>
+#include <candela/ecs/world_reader.hpp>
 #include <candela/scene/components.hpp>
 #include <candela/scene/deformed_mesh.hpp>
 #include <candela/scene/hierarchy.hpp>
@@ -61,7 +61,7 @@ class SceneList {
 
     /// Brings the items up to date with the world; throws as SceneCheck and WorldMatrices do. After that, the
     /// list must not be used any more.
-    void update(const World& world);
+    void update(const WorldReader& world);
 
     [[nodiscard]] const SceneGeometry& geometry() const { return geometry_; }
     [[nodiscard]] const ScenePlacement& placement() const { return placement_; }
@@ -70,11 +70,11 @@ class SceneList {
     static constexpr std::uint32_t none = ChildLinks::none;
 
     void clear();
-    void note_meshes(const World& world, std::span<const Change> changes);
-    void note_shapes(const World& world, std::span<const Change> changes);
-    void note_transforms(const World& world, std::span<const Change> changes);
+    void note_meshes(const WorldReader& world, std::span<const Change> changes);
+    void note_shapes(const WorldReader& world, std::span<const Change> changes);
+    void note_transforms(const WorldReader& world, std::span<const Change> changes);
     void touch_below(std::uint32_t entity);
-    void refresh(const World& world, std::uint32_t item, WorldMatrices& matrices);
+    void refresh(const WorldReader& world, std::uint32_t item, WorldMatrices& matrices);
     [[nodiscard]] std::uint32_t item_of(std::uint32_t entity) const {
         return entity < item_of_.size() ? item_of_[entity] : none;
     }

@@ -4,7 +4,7 @@
 
 namespace candela {
 
-Environment accepted_environment(const World& world, SceneCheck& check) {
+Environment accepted_environment(const WorldReader& world, SceneCheck& check) {
     return environment_of(world, [&](Entity entity, const Environment& environment) {
         return check.accepts(world, entity, environment);
     });

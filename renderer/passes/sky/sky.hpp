@@ -17,7 +17,7 @@ struct Sky {
 };
 
 /// The environment that counts, of those that `check` accepts.
-[[nodiscard]] Environment accepted_environment(const World& world, SceneCheck& check);
+[[nodiscard]] Environment accepted_environment(const WorldReader& world, SceneCheck& check);
 
 /// Adds nodes `sky` (CPU): reads the Environment, and `sky-split` (CPU: split_sky into about `count` patches,
 /// when the picture changes).

@@ -105,7 +105,7 @@ CameraView make_view(const Camera& camera, const glm::mat4& world_from_camera, g
             .orthographic = is_orthographic(camera)};
 }
 
-CameraView requested_view(const World& world, const ViewRequest& request) {
+CameraView requested_view(const WorldReader& world, const ViewRequest& request) {
     const auto& camera = world.get<Camera>(request.camera);
     const glm::mat4 matrix = world_matrix(world, request.camera);
     Fault fault = fault_of(camera);
@@ -121,7 +121,7 @@ void read_request(Pass& pass, ValueHandle<ViewRequest> request) {
     pass.read<Transform>();
 }
 
-std::vector<CameraView> requested_views(const World& world, const std::vector<ViewRequest>& requests) {
+std::vector<CameraView> requested_views(const WorldReader& world, const std::vector<ViewRequest>& requests) {
     std::vector<CameraView> views;
     views.reserve(requests.size());
     for (const ViewRequest& request : requests) views.push_back(requested_view(world, request));

@@ -7,7 +7,7 @@
 #include <string>
 #include <vector>
 
-#include <candela/ecs/world.hpp>
+#include <candela/ecs/world_reader.hpp>
 #include <candela/graph/frame_graph.hpp>
 #include <candela/scene/components.hpp>
 #include <candela/view.hpp>
@@ -30,12 +30,12 @@ struct ViewRequest {
 
 /// The view that the host asks for. Throws EntityError if `request.camera` is not alive or has no Camera, and
 /// SceneError if its parents form a cycle or were destroyed, or if the camera or its matrix has a fault.
-[[nodiscard]] CameraView requested_view(const World& world, const ViewRequest& request);
+[[nodiscard]] CameraView requested_view(const WorldReader& world, const ViewRequest& request);
 /// Declares the reads of a pass that calls requested_view.
 void read_request(Pass& pass, ValueHandle<ViewRequest> request);
 
 /// The same for all views.
-[[nodiscard]] std::vector<CameraView> requested_views(const World& world,
+[[nodiscard]] std::vector<CameraView> requested_views(const WorldReader& world,
                                                       const std::vector<ViewRequest>& requests);
 void read_requests(Pass& pass, ValueHandle<std::vector<ViewRequest>> requests);
 

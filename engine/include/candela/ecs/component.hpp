@@ -3,6 +3,9 @@
 #include <concepts>
 #include <cstddef>
 #include <string_view>
+#include <typeindex>
+
+#include <candela/api.hpp>
 
 namespace candela {
 
@@ -23,6 +26,9 @@ inline constexpr std::string_view known_name = "double";
 inline constexpr std::size_t prefix = signature<double>().find(known_name);
 inline constexpr std::size_t suffix = signature<double>().size() - prefix - known_name.size();
 
+/// The index of a component type. Thread-safe.
+[[nodiscard]] CANDELA_API std::size_t component_index(std::type_index type);
+
 }  // namespace detail
 
 /// The type's name without its namespaces: "PointLight" for candela::PointLight. Points into static storage.
@@ -33,6 +39,14 @@ template <class C>
     name.remove_suffix(detail::suffix);
     const auto scope = name.substr(0, name.find('<')).rfind("::");
     return scope == std::string_view::npos ? name : name.substr(scope + 2);
+}
+
+/// A small number that only this type has in the process: types are counted from 0, as they are first used.
+/// Shared libraries that use one engine library get the same number for one type.
+template <Component C>
+[[nodiscard]] std::size_t component_index() {
+    static const std::size_t index = detail::component_index(typeid(C));
+    return index;
 }
 
 }  // namespace candela

@@ -29,14 +29,16 @@ struct Entity {
 /// "the null entity" or "entity 3 (generation 5)".
 [[nodiscard]] CANDELA_API std::string to_string(Entity entity);
 
-/// Thrown for use of an entity that is not alive, or of a component that it does not have. The message names
-/// the entity and the component.
+/// Thrown for use of an entity that is not alive or cannot be, or of a component that it does not have. The
+/// message names the entity and the component.
 class CANDELA_API EntityError : public Error {
  public:
     using Error::Error;
 
     [[nodiscard]] static EntityError not_alive(Entity entity, std::string_view component);
     [[nodiscard]] static EntityError lacks(Entity entity, std::string_view component);
+    /// No entity with this generation is ever alive.
+    [[nodiscard]] static EntityError never_alive(Entity entity);
 };
 
 }  // namespace candela

@@ -1,6 +1,8 @@
 #pragma once
 
+#include <array>
 #include <cstddef>
+#include <cstdint>
 #include <iterator>
 #include <span>
 #include <tuple>
@@ -21,6 +23,7 @@ namespace candela {
 template <Component... Cs>
 class View {
     using Pools = std::tuple<const Pool<Cs>*...>;
+    using Indices = std::index_sequence_for<Cs...>;
 
  public:
     class Iterator {
@@ -29,18 +32,15 @@ class View {
         using difference_type = std::ptrdiff_t;
 
         Iterator() = default;
-        Iterator(Pools pools, std::span<const Entity> candidates)
-            : pools_(std::move(pools)), candidates_(candidates) {
+        Iterator(const Pools& pools, std::size_t smallest, std::span<const Entity> candidates)
+            : pools_(pools), smallest_(smallest), candidates_(candidates) {
             skip_incomplete();
         }
 
-        [[nodiscard]] value_type operator*() const {
-            const Entity entity = candidates_.front();
-            return {entity, *std::get<const Pool<Cs>*>(pools_)->find(entity)...};
-        }
+        [[nodiscard]] value_type operator*() const { return row(Indices{}); }
 
         Iterator& operator++() {
-            candidates_ = candidates_.subspan(1);
+            ++at_;
             skip_incomplete();
             return *this;
         }
@@ -51,43 +51,53 @@ class View {
             return before;
         }
 
-        [[nodiscard]] bool operator==(const Iterator& other) const {
-            return candidates_.size() == other.candidates_.size();
-        }
-        [[nodiscard]] bool operator==(std::default_sentinel_t) const { return candidates_.empty(); }
+        [[nodiscard]] bool operator==(const Iterator& other) const { return at_ == other.at_; }
+        [[nodiscard]] bool operator==(std::default_sentinel_t) const { return at_ == candidates_.size(); }
 
      private:
-        [[nodiscard]] bool complete(Entity entity) const {
-            return (std::get<const Pool<Cs>*>(pools_)->find(entity) && ...);
+        template <std::size_t... I>
+        [[nodiscard]] value_type row(std::index_sequence<I...> /*of_pools*/) const {
+            return {candidates_[at_], std::get<I>(pools_)->values()[places_[I]]...};
         }
 
         void skip_incomplete() {
-            while (!candidates_.empty() && !complete(candidates_.front())) {
-                candidates_ = candidates_.subspan(1);
-            }
+            while (at_ < candidates_.size() && !find_places(Indices{})) ++at_;
+        }
+
+        /// False if a pool lacks the candidate.
+        template <std::size_t... I>
+        [[nodiscard]] bool find_places(std::index_sequence<I...> /*of_pools*/) {
+            return (((places_[I] = place_in<I>()) != PoolBase::absent) && ...);
+        }
+
+        template <std::size_t I>
+        [[nodiscard]] std::uint32_t place_in() const {
+            const bool is_smallest = sizeof...(Cs) == 1 || I == smallest_;
+            return is_smallest ? static_cast<std::uint32_t>(at_)
+                               : std::get<I>(pools_)->place_of(candidates_[at_]);
         }
 
         Pools pools_{};
-        std::span<const Entity> candidates_;  // from here to the end of the smallest pool
+        std::size_t smallest_ = 0;
+        std::span<const Entity> candidates_;  // the entities of the smallest pool
+        std::size_t at_ = 0;
+        std::array<std::uint32_t, sizeof...(Cs)> places_{};  // of the candidate's components
     };
 
-    /// A null pool counts as empty.
-    explicit View(const Pool<Cs>*... pools) : pools_(pools...) {
-        if ((pools && ...)) {
-            candidates_ = std::get<0>(pools_)->entities();
-            (consider(pools->entities()), ...);
+    explicit View(const Pool<Cs>&... pools) : pools_(&pools...) {
+        const std::array<std::span<const Entity>, sizeof...(Cs)> candidates{pools.entities()...};
+        for (std::size_t i = 1; i < candidates.size(); ++i) {
+            if (candidates[i].size() < candidates[smallest_].size()) smallest_ = i;
         }
+        candidates_ = candidates[smallest_];
     }
 
-    [[nodiscard]] Iterator begin() const { return Iterator(pools_, candidates_); }
+    [[nodiscard]] Iterator begin() const { return Iterator(pools_, smallest_, candidates_); }
     [[nodiscard]] std::default_sentinel_t end() const { return {}; }
 
  private:
-    void consider(std::span<const Entity> entities) {
-        if (entities.size() < candidates_.size()) candidates_ = entities;
-    }
-
     Pools pools_;
+    std::size_t smallest_ = 0;
     std::span<const Entity> candidates_;
 };
 

@@ -62,7 +62,7 @@ enum class AnimatedProperty : std::uint8_t {
 
 /// A value of a target that follows a sampler.
 struct AnimationChannel {
-    std::size_t target = 0;  ///< index into AnimationPlayer::targets
+    std::size_t target = 0;  ///< index into Animations::targets
     AnimatedProperty property = AnimatedProperty::translation;
     std::size_t sampler = 0;  ///< index into AnimationClip::samplers
 };
@@ -75,17 +75,28 @@ struct AnimationClip {
     float duration = 0.0F;  ///< seconds from 0 to the last key
 };
 
-/// Plays one of its clips. The targets are apart from the clips, so that players of several figures can share
-/// clips.
-struct AnimationPlayer {
+/// The motions of a figure. The targets are apart from the clips, so that several figures can share clips.
+/// Immutable once they are shared.
+struct Animations {
     std::vector<std::shared_ptr<const AnimationClip>> clips;  ///< none is null
     std::vector<Entity> targets;                              ///< what the channels of the clips change
-    std::size_t clip = 0;                                     ///< the one that is played; index into `clips`
-    double time = 0.0;                                        ///< seconds from the start of the clip
-    double speed = 1.0;   ///< seconds of the clip by second; negative: backwards
-    bool playing = true;  ///< advance_animations moves it
+};
+
+/// Plays one of the clips. Changes in each frame, so that it shares what stays the same.
+struct AnimationPlayer {
+    std::shared_ptr<const Animations> animations;  ///< null: none
+    std::size_t clip = 0;                          ///< the one that is played; index into `clips`
+    double time = 0.0;                             ///< seconds from the start of the clip
+    double speed = 1.0;                            ///< seconds of the clip by second; negative: backwards
+    bool playing = true;                           ///< advance_animations moves it
     bool looping = true;  ///< it starts again at its end; else it stays there and `playing` ends
     bool operator==(const AnimationPlayer&) const = default;
 };
+
+/// The clip that the player plays; null if it does not exist. Valid as long as the player's `animations`.
+[[nodiscard]] inline const AnimationClip* played_clip(const AnimationPlayer& player) {
+    const bool exists = player.animations && player.clip < player.animations->clips.size();
+    return exists ? player.animations->clips[player.clip].get() : nullptr;
+}
 
 }  // namespace candela

@@ -15,7 +15,7 @@
 #include <glm/vec4.hpp>
 
 #include <candela/api.hpp>
-#include <candela/ecs/world.hpp>
+#include <candela/ecs/world_reader.hpp>
 #include <candela/scene/lights.hpp>
 
 namespace candela {
@@ -256,7 +256,7 @@ struct Environment {
 /// The first environment in the world's view whose radiance is not zero and that `accepts`, if given,
 /// accepts; radiance 0 if there is none.
 [[nodiscard]] CANDELA_API Environment
-environment_of(const World& world, const std::function<bool(Entity, const Environment&)>& accepts = {});
+environment_of(const WorldReader& world, const std::function<bool(Entity, const Environment&)>& accepts = {});
 
 /// The direction that a point of the sky's picture shows, without rotation: a unit vector. `at` is in [0,
 /// 1]², (0, 0) the top left corner.

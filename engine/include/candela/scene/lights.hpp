@@ -5,7 +5,7 @@
 
 #include <glm/vec3.hpp>
 
-#include <candela/ecs/world.hpp>
+#include <candela/ecs/world_reader.hpp>
 
 namespace candela {
 
@@ -93,7 +93,7 @@ constexpr void for_each_light_kind(Visit&& visit) {
 
 /// Calls `visit(Entity, const Light&)` for each light in the world, kind by kind.
 template <class Visit>
-void visit_lights(const World& world, Visit&& visit) {
+void visit_lights(const WorldReader& world, Visit&& visit) {
     for_each_light_kind([&]<class Light>(const LightTraits<Light>&) {
         for (const auto& [entity, light] : world.view<Light>()) {
             visit(entity, light);
@@ -103,7 +103,7 @@ void visit_lights(const World& world, Visit&& visit) {
 
 /// Calls `visit(const Light&)` for each light of the entity, which may have one of each kind.
 template <class Visit>
-void visit_lights_of(const World& world, Entity entity, Visit&& visit) {
+void visit_lights_of(const WorldReader& world, Entity entity, Visit&& visit) {
     for_each_light_kind([&]<class Light>(const LightTraits<Light>&) {
         if (const auto* const light = world.find<Light>(entity)) visit(*light);
     });
