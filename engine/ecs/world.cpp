@@ -10,7 +10,7 @@
 
 #include <fmt/format.h>
 
-#include <candela/ecs/world_reader.hpp>
+#include <candela/ecs/world_writer.hpp>
 
 namespace candela {
 
@@ -38,9 +38,16 @@ EntityError EntityError::never_alive(Entity entity) {
     return EntityError(fmt::format("{} cannot be created: no entity has that generation", to_string(entity)));
 }
 
-UndeclaredRead UndeclaredRead::of(std::string_view pass, std::string_view component) {
-    return UndeclaredRead(
-        fmt::format("pass '{}' reads {} components without having declared it", pass, component));
+UndeclaredAccess UndeclaredAccess::of(std::string_view pass, std::string_view verb,
+                                      std::string_view component) {
+    return UndeclaredAccess(
+        fmt::format("pass '{}' {} {} components without having declared it", pass, verb, component));
+}
+
+World& WorldWriter::with_entities() const {
+    if (!declared_ || (world_ && declared_->writes_entities)) return *world_;
+    throw UndeclaredAccess(
+        fmt::format("pass '{}' creates or destroys entities without having declared it", pass()));
 }
 
 Entity EntityTable::add() {

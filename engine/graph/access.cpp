@@ -103,29 +103,9 @@ const TextureDesc& Execution::desc(TextureHandle texture) const {
     return slot(texture, false).storage.texture;
 }
 
-World& Execution::writable(std::type_index component, std::string_view name) const {
+WorldWriter Execution::world() const {
     const detail::Step& step = runtime_.state_->steps[position_];
-    const auto suits = [&](const detail::Revision& revision) {
-        return revision.access.write && revision.access.type == component;
-    };
-    if (std::ranges::any_of(step.revisions, suits)) return *writable_;
-    throw GraphError(
-        fmt::format("pass '{}' changes {} components without having declared it", step.name, name));
-}
-
-World& Execution::with_entities() const {
-    const detail::Step& step = runtime_.state_->steps[position_];
-    if (step.writes_entities) return *writable_;
-    throw GraphError(
-        fmt::format("pass '{}' creates or destroys entities without having declared it", step.name));
-}
-
-Entity Execution::create() {
-    return with_entities().create();
-}
-
-void Execution::destroy(Entity entity) {
-    with_entities().destroy(entity);
+    return {world_, writable_, step.declared, step.name};
 }
 
 std::uint64_t Execution::count_of(ResourceHandle buffer) const {

@@ -25,7 +25,7 @@ std::vector<bool> passes_after(std::uint32_t first, const std::vector<Dependency
     return after;
 }
 
-bool writes(const Declaration& declared, std::uint32_t pass, std::type_index component) {
+bool writes(const Declaration& declared, std::uint32_t pass, std::size_t component) {
     return std::ranges::any_of(declared.components_of(pass), [&](const ComponentAccess& access) {
         return access.write && access.type == component;
     });

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <chrono>
 #include <exception>
+#include <limits>
 #include <utility>
 
 #include <fmt/format.h>
@@ -21,6 +22,9 @@ enum Need : std::uint8_t {
     may_change = 1,  // its inputs have changed, or may still change in this frame
     certain = 2      // it runs even if its inputs do not change
 };
+
+/// Stands for all types of components.
+constexpr std::size_t all_types = std::numeric_limits<std::size_t>::max();
 
 /// Ends a pass whose frame is not wanted any more.
 struct Unwanted : std::exception {};
@@ -160,17 +164,16 @@ void GraphRuntime::mark(const World& world, std::uint32_t from) {
 
 /// Whether an earlier step may change components in this frame that the step reads or writes.
 bool GraphRuntime::follows_system(const detail::Step& step) const {
-    const std::vector<std::type_index>& changing = state_->components_to_change;
+    const std::vector<std::size_t>& changing = state_->components_to_change;
     return !changing.empty() && std::ranges::any_of(step.revisions, [&](const detail::Revision& revision) {
-        return std::ranges::count(changing, revision.access.type) +
-                   std::ranges::count(changing, typeid(Entity)) >
-               0;
+        return std::ranges::any_of(
+            changing, [&](std::size_t type) { return type == revision.access.type || type == all_types; });
     });
 }
 
 void GraphRuntime::note_system(const detail::Step& step) {
-    std::vector<std::type_index>& changing = state_->components_to_change;
-    if (step.writes_entities) changing.emplace_back(typeid(Entity));
+    std::vector<std::size_t>& changing = state_->components_to_change;
+    if (step.declared.writes_entities) changing.push_back(all_types);
     for (const detail::Revision& revision : step.revisions) {
         if (revision.access.write) changing.push_back(revision.access.type);
     }
@@ -237,7 +240,7 @@ void GraphRuntime::run_step(Execution& execution, bool changed) {
         }
         if (step.invoke) step.invoke(step.function, execution);
     }
-    keep_record(step, execution.world(), changed);
+    keep_record(step, execution.world_, changed);
 }
 
 bool GraphRuntime::has_results(const detail::Step& step) const {

@@ -441,14 +441,14 @@ void Renderer::State::invalidate() {
     schedule_.invalidate();
 }
 
-void Renderer::State::match_times(const std::vector<gl::FrameTime>& times) {
-    for (const gl::FrameTime& time : times) {
+void Renderer::State::match_times(const std::vector<FrameTime>& times) {
+    for (const FrameTime& time : times) {
         // A frame that threw or was abandoned has GPU times but no report.
         if (pending_.empty() || pending_.front().report.index != time.frame) continue;
         PendingFrame frame = std::move(pending_.front());
         pending_.pop_front();
         frame.report.gpu_ms = time.ms;
-        for (const gl::PassTime& pass : time.passes) {
+        for (const PassTime& pass : time.passes) {
             frame.report.passes[pass.pass].gpu_ms = pass.ms;
         }
         learn_cost(frame);

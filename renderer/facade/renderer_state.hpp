@@ -97,7 +97,7 @@ class CANDELA_PRIVATE Renderer::State {
     [[nodiscard]] double budget_ms(const Configuration& configuration) const;
     void learn_cost(const PendingFrame& frame);
     [[nodiscard]] FrameOutcome outcome() const;
-    void match_times(const std::vector<gl::FrameTime>& times);
+    void match_times(const std::vector<FrameTime>& times);
     [[nodiscard]] bool refines() const;
     [[nodiscard]] VplReport report_vpls(const Vpls& vpls, const ViewHandles& view) const;
     [[nodiscard]] std::uint32_t count_filled(const ViewHandles& view) const;

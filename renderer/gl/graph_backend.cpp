@@ -73,6 +73,7 @@ void GraphBackend::barrier(Barrier bits) {
 
 void GraphBackend::begin_pass(std::string_view name, std::uint32_t index, const PassTargets* targets) {
     const Functions& gl = device_->gl();
+    if (!host_passes_) set_assumed_state(gl);
     targets_ = nullptr;
     if (targets != nullptr) bind_targets(*targets);
     // The host may have used up the stack.
@@ -82,7 +83,7 @@ void GraphBackend::begin_pass(std::string_view name, std::uint32_t index, const 
     if (in_debug_group_) {
         gl.PushDebugGroup(GL_DEBUG_SOURCE_APPLICATION, index, static_cast<GLsizei>(name.size()), name.data());
     }
-    in_host_pass_ = host_passes_.contains(name);
+    in_host_pass_ = !host_passes_ || host_passes_->contains(name);
     timer_.begin_pass(index);
     device_->reset_raster_state();
     if (targets != nullptr) device_->set_raster_state({.writes_depth = targets->writes_depth});

@@ -3,6 +3,7 @@
 #include <cstdint>
 #include <functional>
 #include <map>
+#include <optional>
 #include <set>
 #include <string>
 #include <string_view>
@@ -40,6 +41,8 @@ class GraphBackend final : public Backend {
 
     /// Names of the passes that the host has written, which may leave any state behind.
     void set_host_passes(std::set<std::string, std::less<>> names) { host_passes_ = std::move(names); }
+    /// All passes are the host's, which may also change the state between frames.
+    void expect_any_state() { host_passes_.reset(); }
 
     /// Whether new objects are cleared. Without that, what no pass writes is undefined, and digests may
     /// differ.
@@ -63,7 +66,7 @@ class GraphBackend final : public Backend {
     bool in_debug_group_ = false;  // the running pass has pushed its group
     bool in_host_pass_ = false;
     bool clears_new_ = false;
-    std::set<std::string, std::less<>> host_passes_;
+    std::optional<std::set<std::string, std::less<>>> host_passes_{std::in_place};  // none: all
     std::unordered_map<ObjectId, Texture> textures_;
     std::unordered_map<ObjectId, Buffer> buffers_;
     std::map<Attachments, Framebuffer> framebuffers_;

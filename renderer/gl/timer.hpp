@@ -6,23 +6,10 @@
 #include <optional>
 #include <vector>
 
+#include <candela/gl_backend.hpp>
 #include "renderer/gl/objects.hpp"
 
 namespace candela::gl {
-
-/// GPU time of one pass in milliseconds; `pass` is the index given to begin_pass.
-struct PassTime {
-    std::uint32_t pass = 0;
-    double ms = 0.0;
-};
-
-/// GPU times of one frame in milliseconds. `ms` is from the first to the last timestamp of the frame;
-/// `passes` are in the order in which they began.
-struct FrameTime {
-    std::uint64_t frame = 0;
-    double ms = 0.0;
-    std::vector<PassTime> passes;
-};
 
 /// Measures GPU time by timestamp queries. `collect` reads only results that are available, so that
 /// only `finish` waits: for the results themselves, which a driver may have later than it has finished

@@ -7,7 +7,7 @@
 #include <string>
 #include <vector>
 
-#include <candela/ecs/world.hpp>
+#include <candela/ecs/world_reader.hpp>
 #include <candela/view.hpp>
 
 #include "host.hpp"
@@ -43,7 +43,8 @@ void main() { radiance = vec4(reflected, 1.0); })";
 }
 
 /// Draws those of the world, hidden by what is nearer.
-inline void draw_particles(GLuint program, const candela::CameraView& view, const candela::World& world) {
+inline void draw_particles(GLuint program, const candela::CameraView& view,
+                           const candela::WorldReader& world) {
     static const GLuint no_vertices = [] {
         GLuint name = 0;
         glCreateVertexArrays(1, &name);

@@ -79,11 +79,11 @@ void run_recipes(candela::Renderer& renderer, const candela::gl::GetProc& get_pr
     GLuint no_vertices = 0;
     glCreateVertexArrays(1, &no_vertices);
     const GLuint program = host::make_program(host::whole_viewport, copy_fragment);
-    const auto set_uniforms = [](GLuint of_program, const candela::World& of) {
+    const auto set_uniforms = [](GLuint of_program, const candela::WorldReader& of) {
         for (const auto& [entity, bloom] : of.view<Bloom>())
             glProgramUniform1f(of_program, 0, bloom.strength);
     };
-    const auto draw_faded = [=](const candela::World& of) {
+    const auto draw_faded = [=](const candela::WorldReader& of) {
         float factor = 1.0F;
         for (const auto& [entity, fade] : of.view<Fade>()) factor = fade.share;
         glProgramUniform1f(program, 0, factor);

@@ -36,9 +36,8 @@ TEST_CASE_FIXTURE(GraphFixture,
             const TextureDesc desc{{static_cast<std::uint32_t>(count), 1}};
             run.reserve(drawn, desc);
             CHECK(run.desc(drawn) == desc);
-            CHECK(backend.objects.at(run.object(drawn)).texture_desc == desc);
-            CHECK(backend.objects.at(run.object(vpls)).buffer_desc ==
-                  BufferDesc{run.count(vpls), sizeof(float)});
+            CHECK(backend.objects.at(run.object(drawn)).texture == desc);
+            CHECK(backend.objects.at(run.object(vpls)).buffer == BufferDesc{run.count(vpls), sizeof(float)});
             room = run.count(vpls);
             valid.push_back(run.history_valid(previous));
         });

@@ -6,7 +6,7 @@
 
 #include <candela/graph/compile.hpp>
 #include <candela/graph/execute.hpp>
-#include "tests/engine/recording_backend.hpp"
+#include <candela/graph/recording_backend.hpp>
 
 namespace candela {
 

@@ -8,9 +8,9 @@
 #include <utility>
 #include <vector>
 
+#include <candela/graph/recording_backend.hpp>
 #include "engine/graph/details/plan.hpp"
 #include "tests/engine/graph_random.hpp"
-#include "tests/engine/recording_backend.hpp"
 
 /// Random graphs whose passes compute: each pass hashes what it reads into what it writes.
 namespace candela::random_graph {
@@ -193,7 +193,7 @@ class Machine {
         for (const ComponentAccess& access : graph_->passes[pass].components) {
             if (!access.write) continue;
             with_type(access.type,
-                      [&]<class C>(C) { run.set(entity_, C{component_result(access.type, hash)}); });
+                      [&]<class C>(C) { run.world().set(entity_, C{component_result(access.type, hash)}); });
         }
         for (const Access& access : graph_->passes[pass].accesses) {
             if (access.write) {
@@ -205,7 +205,7 @@ class Machine {
         if (graph_->passes[pass].side_effect) seen_[pass] = hash;
     }
 
-    [[nodiscard]] int number(const World& world, std::size_t type) const {
+    [[nodiscard]] int number(const WorldReader& world, std::size_t type) const {
         return with_type(type, [&]<class C>(C) { return world.get<C>(entity_).value; });
     }
 

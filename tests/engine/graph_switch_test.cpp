@@ -169,7 +169,7 @@ TEST_CASE_FIXTURE(Fixture,
 TEST_CASE_FIXTURE(Fixture, "graph switch: a resource with another description is a new resource") {
     start();
     switch_to({.map_size = 16});
-    CHECK(backend.objects.at(runtime.object(handles.shadow_map)).texture_desc.size == glm::uvec2(16));
+    CHECK(backend.objects.at(runtime.object(handles.shadow_map)).texture.size == glm::uvec2(16));
     CHECK(run() == "shadow-maps forward tone-map");
 }
 

@@ -47,7 +47,7 @@ struct Systems : GraphFixture {
             pass.write<Place>();
             pass.run([this](Execution& run) {
                 for (const auto& [moved, speed] : run.world().view<Speed>()) {
-                    run.set(moved, Place{speed.value * run.value(seconds)});
+                    run.world().set(moved, Place{speed.value * run.value(seconds)});
                 }
             });
         });
@@ -59,7 +59,7 @@ struct Systems : GraphFixture {
             pass.write<Box>();
             pass.run([](Execution& run) {
                 for (const auto& [bounded, place] : run.world().view<Place>()) {
-                    run.set(bounded, Box{place.value - 1.0F});
+                    run.world().set(bounded, Box{place.value - 1.0F});
                 }
             });
         });
@@ -113,7 +113,7 @@ TEST_CASE_FIXTURE(Systems, "graph system: what a system writes stays, whoever ch
         pass.read<Box>();
         pass.write<Place>();
         pass.run([this](Execution& run) {
-            if (const Box* box = run.world().find<Box>(entity)) run.set(entity, Place{box->least});
+            if (const Box* box = run.world().find<Box>(entity)) run.world().set(entity, Place{box->least});
         });
     });
     switch_to();
@@ -137,8 +137,8 @@ TEST_CASE_FIXTURE(
         pass.read<Place>();
         pass.write<Place>();
         pass.run([this](Execution& run) {
-            run.edit<Place>(entity,
-                            [&](Place& place) { place.value += run.world().get<Speed>(entity).value; });
+            run.world().edit<Place>(
+                entity, [&](Place& place) { place.value += run.world().get<Speed>(entity).value; });
         });
     });
     switch_to();
@@ -154,8 +154,8 @@ TEST_CASE_FIXTURE(Systems, "graph system: entities come and go") {
         pass.write_entities();
         pass.write<Speed>();
         pass.run([this](Execution& run) {
-            if (run.value(seconds) < 2.0F) return run.set(run.create(), Speed{5.0F});
-            run.destroy(entity);
+            if (run.value(seconds) < 2.0F) return run.world().set(run.world().create(), Speed{5.0F});
+            run.world().destroy(entity);
         });
     });
     add_motion();
@@ -205,7 +205,7 @@ std::string error_of(Systems& systems, std::string_view name, void (*act)(Execut
     systems.runtime.invalidate();
     try {
         (void)systems.run();
-    } catch (const GraphError& error) {
+    } catch (const Error& error) {
         return error.what();
     }
     return "";
@@ -217,14 +217,17 @@ TEST_CASE_FIXTURE(Systems, "graph system: what was not declared is an error that
         seconds = graph.import_value<float>("seconds");
         CHECK(error_of(*this, "meddle", act) == expected);
     };
-    check("", [](Execution& run, Entity whose) { run.set(whose, Box{}); });
+    check("", [](Execution& run, Entity whose) { run.world().set(whose, Box{}); });
     const std::string changes = "pass 'meddle' changes Place components without having declared it";
-    check(changes, [](Execution& run, Entity whose) { run.set(whose, Place{}); });
-    check(changes, [](Execution& run, Entity whose) { run.edit<Place>(whose, [](Place&) {}); });
-    check(changes, [](Execution& run, Entity whose) { run.remove<Place>(whose); });
+    check(changes, [](Execution& run, Entity whose) { run.world().set(whose, Place{}); });
+    check(changes, [](Execution& run, Entity whose) { run.world().edit<Place>(whose, [](Place&) {}); });
+    check(changes, [](Execution& run, Entity whose) { run.world().remove<Place>(whose); });
     const std::string entities = "pass 'meddle' creates or destroys entities without having declared it";
-    check(entities, [](Execution& run, Entity) { (void)run.create(); });
-    check(entities, [](Execution& run, Entity whose) { run.destroy(whose); });
+    const std::string reads = "pass 'meddle' reads Speed components without having declared it";
+    check(reads, [](Execution& run, Entity whose) { (void)run.world().find<Speed>(whose); });
+    check(reads, [](Execution& run, Entity) { (void)run.world().view<Place, Speed>(); });
+    check(entities, [](Execution& run, Entity) { (void)run.world().create(); });
+    check(entities, [](Execution& run, Entity whose) { run.world().destroy(whose); });
     CHECK(world.has<Place>(entity));
 }
 

@@ -97,28 +97,6 @@ TEST_CASE_FIXTURE(VerifyFixture, "graph verify: a captured variable is an undecl
 }
 
 TEST_CASE_FIXTURE(VerifyFixture,
-                  "graph verify: a component that is read without a declaration is an undeclared input") {
-    const Entity entity = world.create();
-    world.set(entity, Light{1});
-    const auto power = graph.add("gather", [&](Pass& pass) {
-        const auto written = pass.write(graph.value<int>("power"));
-        pass.run([=](Execution& run) { run.set(written, run.world().get<Light>(entity).power); });
-        return written;
-    });
-    const TextureHandle lit =
-        raise("light", fill("clear", texture("lit"), [](Execution&) { return 0U; }), power);
-    show(lit);
-    switch_to();
-    CHECK(frame() == "gather clear light show | gather clear light");
-    world.set(entity, Light{2});
-    CHECK_THROWS_WITH_AS(
-        frame(),
-        "pass 'gather' has an undeclared input: run again while nothing that it declares has "
-        "changed, it gives value 'power' another content",
-        GraphError);
-}
-
-TEST_CASE_FIXTURE(VerifyFixture,
                   "graph verify: a pass that is not deterministic is found in its first frame") {
     std::uint64_t calls = 0;
     const auto made = graph.add("scatter", [&](Pass& pass) {

@@ -598,7 +598,7 @@ TEST_CASE("world: a pass reads only components of types that it has declared") {
 
     const auto refused = [&](const auto& read) {
         CHECK_THROWS_WITH_AS(read(), "pass 'sums' reads Label components without having declared it",
-                             UndeclaredRead);
+                             UndeclaredAccess);
     };
     refused([&] { (void)reader.find<Label>(entity); });
     refused([&] { (void)reader.get<Label>(entity); });
@@ -612,7 +612,7 @@ TEST_CASE("world: a pass reads only components of types that it has declared") {
     refused([&] { (void)reader.view<Height, Label>(); });
     refused([&] { (void)reader.storage<Label>(); });
     // The list need not be as long as there are types.
-    CHECK_THROWS_AS((void)WorldReader(world, {}, "none").count<Height>(), UndeclaredRead);
+    CHECK_THROWS_AS((void)WorldReader(world, {}, "none").count<Height>(), UndeclaredAccess);
 }
 
 // The reference model: the contents of each component type, by entity, and all entities ever created.

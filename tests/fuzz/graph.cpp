@@ -16,7 +16,7 @@
 #include "engine/graph/details/plan.hpp"
 #include "tests/engine/graph_machine.hpp"
 #include "tests/engine/graph_random.hpp"
-#include "tests/engine/recording_backend.hpp"
+#include <candela/graph/recording_backend.hpp>
 #include "tests/fuzz/fuzz.hpp"
 
 using namespace candela;

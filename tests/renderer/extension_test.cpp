@@ -37,7 +37,7 @@ struct Gain {
     bool operator==(const Gain&) const = default;
 };
 
-float gain_of(const World& world) {
+float gain_of(const WorldReader& world) {
     float factor = 1.0F;
     for (const auto& [entity, gain] : world.view<Gain>()) {
         factor *= gain.factor;
@@ -139,10 +139,10 @@ TEST_CASE_FIXTURE(ExtensionTests, "a pass of the host's is driven by its own com
 TEST_CASE_FIXTURE(ExtensionTests, "extensions follow each other, in all views and configurations") {
     const Picture usual = frame();
     REQUIRE(
-        renderer.extend(scaling("double", ExtensionPlace::after_shading, [](const World&) { return 2.0F; }))
+        renderer.extend(scaling("double", ExtensionPlace::after_shading, [](const WorldReader&) { return 2.0F; }))
             .empty());
     REQUIRE(
-        renderer.extend(scaling("triple", ExtensionPlace::before_tone_map, [](const World&) { return 3.0F; }))
+        renderer.extend(scaling("triple", ExtensionPlace::before_tone_map, [](const WorldReader&) { return 3.0F; }))
             .empty());
     CHECK(frame() == 6.0F * usual);
     for (const ShadingPath path : {ShadingPath::forward, ShadingPath::clustered_deferred}) {
@@ -160,7 +160,7 @@ TEST_CASE_FIXTURE(ExtensionTests, "extensions follow each other, in all views an
     CHECK(describe_text(renderer.description()).find("triple 2") != std::string::npos);
     // The same name replaces.
     REQUIRE(
-        renderer.extend(scaling("triple", ExtensionPlace::before_tone_map, [](const World&) { return 0.5F; }))
+        renderer.extend(scaling("triple", ExtensionPlace::before_tone_map, [](const WorldReader&) { return 0.5F; }))
             .empty());
     CHECK(relative_mean_square(frame(), usual) < 1e-10);
 }
@@ -178,7 +178,7 @@ TEST_CASE_FIXTURE(ExtensionTests,
     Configuration configuration = renderer.configuration();
     configuration.indirect = false;
     configure(configuration);
-    const auto black = [](const World&) { return 0.0F; };
+    const auto black = [](const WorldReader&) { return 0.0F; };
     REQUIRE(renderer.extend(scaling("black", ExtensionPlace::after_shading, black)).empty());
     // What the pane reflects, times its alpha; half floats.
     CHECK(render(pane, size).at(12, 9).r == doctest::Approx(0.5 * 0.9 / std::numbers::pi).epsilon(2e-3));
@@ -457,7 +457,7 @@ TEST_CASE_FIXTURE(ExtensionTests,
                   "an extension that throws while it runs leaves the target, and can recover") {
     const Picture usual = frame();
     bool fails = true;
-    const auto factor = [&](const World&) {
+    const auto factor = [&](const WorldReader&) {
         if (fails) throw std::runtime_error("not now");
         return 1.0F;
     };
@@ -473,7 +473,7 @@ TEST_CASE_FIXTURE(ExtensionTests,
 TEST_CASE_FIXTURE(ExtensionTests, "verification finds an input that a pass of the host's does not declare") {
     float hidden = 1.0F;
     REQUIRE(
-        renderer.extend(scaling("sly", ExtensionPlace::after_shading, [&](const World&) { return hidden; }))
+        renderer.extend(scaling("sly", ExtensionPlace::after_shading, [&](const WorldReader&) { return hidden; }))
             .empty());
     renderer.verify(true);
     static_cast<void>(frame());

@@ -29,7 +29,7 @@ TEST_CASE("all exceptions of the library have one base class") {
     using candela::Error;
     CHECK(std::is_base_of_v<std::runtime_error, Error>);
     CHECK(std::is_base_of_v<Error, candela::EntityError>);
-    CHECK(std::is_base_of_v<Error, candela::UndeclaredRead>);
+    CHECK(std::is_base_of_v<Error, candela::UndeclaredAccess>);
     CHECK(std::is_base_of_v<Error, candela::SceneError>);
     CHECK(std::is_base_of_v<Error, candela::GraphError>);
     CHECK(std::is_base_of_v<Error, candela::ContextError>);

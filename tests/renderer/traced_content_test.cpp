@@ -7,7 +7,7 @@
 
 #include <candela/ecs/world.hpp>
 #include <candela/graph/compile.hpp>
-#include "tests/engine/recording_backend.hpp"
+#include <candela/graph/recording_backend.hpp>
 
 TEST_SUITE("traced content") {
 

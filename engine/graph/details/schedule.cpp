@@ -104,7 +104,7 @@ class Dependencies {
         }
     }
 
-    [[nodiscard]] Type* find_type(std::type_index type) {
+    [[nodiscard]] Type* find_type(std::size_t type) {
         const auto found = std::ranges::find_if(
             types_, [&](const Type& other) { return declared_.components[other.access].type == type; });
         return found == types_.end() ? nullptr : &*found;

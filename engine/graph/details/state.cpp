@@ -17,11 +17,14 @@ Step make_step(const Declaration& declared, const Plan& plan, std::uint32_t posi
               .side_effect = node.side_effect,
               .keeps_state = node.keeps_state,
               .writes_world = node.writes_entities,
-              .writes_entities = node.writes_entities,
               .held_by = node.held_by == none ? none : plan.object[node.held_by]};
+    step.declared.writes_entities = node.writes_entities;
     for (const ComponentAccess& access : declared.components_of(pass)) {
         step.revisions.push_back({access});
         step.writes_world |= access.write;
+        std::vector<bool>& types = access.write ? step.declared.writes : step.declared.reads;
+        types.resize(std::max(types.size(), access.type + 1));
+        types[access.type] = true;
     }
     for (const Access& access : declared.accesses_of(pass)) {
         const Resource& resource = declared.resources[access.resource];

@@ -4,7 +4,6 @@
 #include <memory>
 #include <string>
 #include <string_view>
-#include <typeindex>
 #include <utility>
 #include <vector>
 
@@ -84,14 +83,14 @@ struct Step {
     std::vector<Input> inputs{};
     std::vector<Output> outputs{};
     std::vector<Revision> revisions{};
+    DeclaredComponents declared{};
     std::vector<Target> targets{};
     std::vector<Bound> bound{};
     Barrier barrier = Barrier::none;
     bool side_effect = false;
     bool writes_import = false;
     bool keeps_state = false;
-    bool writes_world = false;  // components or entities
-    bool writes_entities = false;
+    bool writes_world = false;     // components or entities
     std::uint32_t held_by = none;  // slot of the value that holds the pass: FrameGraph::hold_passes
     bool is_held = false;          // in this frame
     bool has_run = false;
@@ -105,7 +104,7 @@ struct State {
     std::vector<std::uint32_t> holds;    // per slot: the version that was written to it last, or none
     std::vector<std::uint8_t> turned;    // per slot: was swapped with its history in this frame
     std::vector<std::uint32_t> imports;  // resources that the host must provide
-    std::vector<std::type_index> components_to_change;  // scratch: types that steps may change in this frame
+    std::vector<std::size_t> components_to_change;  // scratch: types that steps may change in this frame
     std::vector<std::uint8_t> need;  // scratch: per step, and one more for versions that no step makes
     std::vector<Content> contents;   // per version id; empty without verification
 

@@ -10,19 +10,22 @@
 
 namespace candela {
 
-/// Thrown if a pass reads components without having declared it. The message names the pass and their type.
-class CANDELA_API UndeclaredRead : public Error {
+/// Thrown if a pass reads or changes components, or creates or destroys entities, without having declared it.
+/// The message names the pass and the type.
+class CANDELA_API UndeclaredAccess : public Error {
  public:
     using Error::Error;
 
-    [[nodiscard]] static UndeclaredRead of(std::string_view pass, std::string_view component);
+    /// `verb`: such as "reads".
+    [[nodiscard]] static UndeclaredAccess of(std::string_view pass, std::string_view verb,
+                                             std::string_view component);
 };
 
 /// A world to read, for code that may read only components of some types, or of all. A small value, which
 /// owns nothing and is valid as long as the world is where it is. Like `const World&`, which converts to it;
 /// what it returns is the world's, and may outlive the reader.
 ///
-/// All functions with a type C throw UndeclaredRead if components of that type may not be read.
+/// All functions with a type C throw UndeclaredAccess if components of that type may not be read.
 class CANDELA_API WorldReader : public WorldReads<WorldReader> {
  public:
     /// Everything may be read.
@@ -35,6 +38,10 @@ class CANDELA_API WorldReader : public WorldReads<WorldReader> {
     /// For texts of messages, which may name what a pass's result does not depend on: everything may be read.
     [[nodiscard]] WorldReader for_messages() const { return {*world_}; }
 
+ protected:
+    /// The name given, for messages.
+    [[nodiscard]] std::string_view pass() const { return pass_; }
+
  private:
     friend WorldReads<WorldReader>;
 
@@ -42,7 +49,7 @@ class CANDELA_API WorldReader : public WorldReads<WorldReader> {
 
     template <Component C>
     [[nodiscard]] const Pool<C>& pool() const {
-        if (!may_read(component_index<C>())) throw UndeclaredRead::of(pass_, component_name<C>());
+        if (!may_read(component_index<C>())) throw UndeclaredAccess::of(pass_, "reads", component_name<C>());
         return world_->pool<C>();
     }
 

@@ -14,6 +14,7 @@
 
 #include <candela/api.hpp>
 #include <candela/ecs/world.hpp>
+#include <candela/ecs/world_writer.hpp>
 #include <candela/graph/backend.hpp>
 #include <candela/graph/compile.hpp>
 #include <candela/graph/errors.hpp>
@@ -60,26 +61,9 @@ template <class T>
 /// has not declared throws GraphError, which names the pass and the resource.
 class CANDELA_API Execution {
  public:
-    /// The world given to GraphRuntime::run. Read only components that the pass has declared: an undeclared
-    /// read is not checked here, and the pass would miss changes.
-    [[nodiscard]] const World& world() const { return world_; }
-
-    // Changes of the world, as by the functions of World with these names. A GraphError names the pass and
-    // the type if the pass has not declared that it writes it: Pass::write, write_entities.
-    template <Component C>
-    void set(Entity entity, C value) {
-        writable<C>().set(entity, std::move(value));
-    }
-    template <Component C, std::invocable<C&> F>
-    void edit(Entity entity, F&& change) {
-        writable<C>().template edit<C>(entity, std::forward<F>(change));
-    }
-    template <Component C>
-    void remove(Entity entity) {
-        writable<C>().template remove<C>(entity);
-    }
-    [[nodiscard]] Entity create();
-    void destroy(Entity entity);
+    /// The world given to GraphRuntime::run, of which the pass may read and change the components that it has
+    /// declared (Pass::read, Pass::write, Pass::write_entities). The rest is an UndeclaredAccess.
+    [[nodiscard]] WorldWriter world() const;
 
     /// The back end's object that holds the resource in this frame. `reserve` may replace it.
     [[nodiscard]] ObjectId object(TextureHandle texture) const { return object_of(texture); }
@@ -162,13 +146,6 @@ class CANDELA_API Execution {
     friend GraphRuntime;
     Execution(GraphRuntime& runtime, const World& world, World* writable)
         : runtime_(runtime), world_(world), writable_(writable) {}
-
-    template <Component C>
-    [[nodiscard]] World& writable() const {
-        return writable(typeid(C), component_name<C>());
-    }
-    [[nodiscard]] World& writable(std::type_index component, std::string_view name) const;
-    [[nodiscard]] World& with_entities() const;
 
     [[nodiscard]] detail::Slot& slot(ResourceHandle handle, bool write) const;
     [[nodiscard]] ObjectId object_of(ResourceHandle resource) const;

@@ -30,7 +30,7 @@ struct Declaration;
 
 /// That a pass reads or writes all components of a type.
 struct ComponentAccess {
-    std::type_index type;
+    std::size_t type;  // component_index
     std::string_view name;
     Tick (*revision)(const World&);
     bool write;
@@ -129,7 +129,7 @@ class CANDELA_API Pass {
         declare_component<C>(false);
     }
 
-    /// The pass is a system: it adds, changes or removes components of type C (Execution::set, edit, remove).
+    /// The pass is a system: it adds, changes or removes components of type C (Execution::world).
     /// It is never culled. It runs again when anybody but itself has changed a C, so that what it writes
     /// stays; it has to follow from what the pass reads, or running it twice would differ from once.
     ///
@@ -141,7 +141,7 @@ class CANDELA_API Pass {
         declare_component<C>(true);
     }
 
-    /// The pass creates or destroys entities (Execution::create, destroy). That counts as a write of every
+    /// The pass creates or destroys entities. That counts as a write of every
     /// type of component.
     void write_entities();
 
@@ -214,8 +214,8 @@ class CANDELA_API Pass {
     void declare_read(ResourceHandle resource, ResourceKind kind, Binding binding);
     template <Component C>
     void declare_component(bool write) {
-        declare_component(
-            {typeid(C), component_name<C>(), [](const World& world) { return world.revision<C>(); }, write});
+        declare_component({component_index<C>(), component_name<C>(),
+                           [](const World& world) { return world.revision<C>(); }, write});
     }
     void declare_component(const detail::ComponentAccess& access);
     [[nodiscard]] ResourceHandle declare_write(ResourceHandle resource, ResourceKind kind, Binding binding);
