@@ -21,7 +21,7 @@ namespace {
 /// Applies one clip at one time.
 class ClipWriter {
  public:
-    ClipWriter(World& world, Entity player, AnimationFaults& faults)
+    ClipWriter(const WorldWriter& world, Entity player, AnimationFaults& faults)
         : world_(world), player_(player), faults_(faults) {}
 
     void write() {
@@ -111,7 +111,7 @@ class ClipWriter {
         return position_;
     }
 
-    World& world_;
+    WorldWriter world_;
     Entity player_;
     AnimationFaults& faults_;
     Entity target_{};  // whose Transform is being written
@@ -139,7 +139,7 @@ void advance(AnimationPlayer& player, double seconds) {
 
 }  // namespace
 
-AnimationFaults advance_animations(World& world, double seconds) {
+AnimationFaults advance_animations(const WorldWriter& world, double seconds) {
     std::vector<Entity> playing;
     for (const auto& [entity, player] : world.view<AnimationPlayer>()) {
         if (player.playing) playing.push_back(entity);
@@ -154,7 +154,7 @@ AnimationFaults advance_animations(World& world, double seconds) {
     return faults;
 }
 
-AnimationFaults apply_animation(World& world, Entity player) {
+AnimationFaults apply_animation(const WorldWriter& world, Entity player) {
     static_cast<void>(world.get<AnimationPlayer>(player));
     AnimationFaults faults;
     ClipWriter(world, player, faults).write();

@@ -109,7 +109,7 @@ bool same_bits(const std::vector<AffineColumns>& a, const std::vector<AffineColu
 }
 
 /// The ticks of all that deformations depend on. Pools with equal revisions have equal content.
-std::array<Tick, 5> revisions_of(const World& world) {
+std::array<Tick, 5> revisions_of(const WorldReader& world) {
     return {world.revision<Transform>(), world.revision<MeshInstance>(), world.revision<Skin>(),
             world.revision<MorphWeights>(), world.revision<DeformedMesh>()};
 }
@@ -118,8 +118,8 @@ std::array<Tick, 5> revisions_of(const World& world) {
 /// update.
 class PoseMatrices {
  public:
-    void begin(const World& world) {
-        world_ = &world;
+    void begin(const WorldReader& world) {
+        world_ = world;
         ++update_;
     }
 
@@ -160,7 +160,7 @@ class PoseMatrices {
         const Transform* transform;
     };
 
-    const World* world_ = nullptr;
+    std::optional<WorldReader> world_;
     std::uint64_t update_ = 0;
     std::vector<Known> known_;
     std::vector<Step> ahead_;
@@ -196,7 +196,7 @@ struct MeshDeformer::State {
         return known;
     }
 
-    void update_figure(World& world, Entity entity) {
+    void update_figure(const WorldWriter& world, Entity entity) {
         const auto* const instance = world.find<MeshInstance>(entity);
         if (!instance || !instance->mesh) return;
         Figure& figure = figures[entity.index];
@@ -225,7 +225,7 @@ struct MeshDeformer::State {
     }
 
     /// Leaves none for an entity without a skin.
-    void find_joints(const World& world, Entity entity, const PreparedMesh& mesh) {
+    void find_joints(const WorldReader& world, Entity entity, const PreparedMesh& mesh) {
         joints.clear();
         const auto* const skin = world.find<Skin>(entity);
         if (!skin) return;
@@ -248,7 +248,7 @@ struct MeshDeformer::State {
         }
     }
 
-    void find_weights(const World& world, Entity entity, const PreparedMesh& mesh) {
+    void find_weights(const WorldReader& world, Entity entity, const PreparedMesh& mesh) {
         weights.clear();
         const auto* const morph = world.find<MorphWeights>(entity);
         if (!morph || !mesh.has_targets) return;
@@ -277,7 +277,7 @@ struct MeshDeformer::State {
     }
 
     /// Entities that have neither skin nor weights any more get back the shape of their mesh.
-    void forget(World& world) {
+    void forget(const WorldWriter& world) {
         for (auto at = figures.begin(); at != figures.end();) {
             const Figure& figure = at->second;
             if (figure.is_seen) {
@@ -298,7 +298,7 @@ MeshDeformer::MeshDeformer(MeshDeformer&&) noexcept = default;
 MeshDeformer& MeshDeformer::operator=(MeshDeformer&&) noexcept = default;
 MeshDeformer::~MeshDeformer() = default;
 
-AnimationFaults MeshDeformer::update(World& world) {
+AnimationFaults MeshDeformer::update(const WorldWriter& world) {
     State& state = *state_;
     if (revisions_of(world) == state.revisions) return state.faults;
     state.faults.clear();
@@ -318,7 +318,7 @@ AnimationFaults MeshDeformer::update(World& world) {
     return state.faults;
 }
 
-AnimationFaults MeshDeformer::update(World& world, std::span<const Entity> entities) {
+AnimationFaults MeshDeformer::update(const WorldWriter& world, std::span<const Entity> entities) {
     State& state = *state_;
     state.faults.clear();
     state.matrices.begin(world);

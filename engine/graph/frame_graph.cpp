@@ -57,11 +57,6 @@ ResourceHandle find(const Declaration& declared, std::string_view name, Resource
     return {};
 }
 
-/// Null without one.
-const std::any* note_of(const Declaration& declared, const Resource& resource) {
-    return resource.note == none ? nullptr : &declared.notes[resource.note];
-}
-
 }  // namespace
 
 std::size_t detail::Storage::hash() const {
@@ -106,25 +101,33 @@ FrameGraph::FrameGraph(FrameGraph&& other) noexcept = default;
 FrameGraph& FrameGraph::operator=(FrameGraph&& other) noexcept = default;
 FrameGraph::~FrameGraph() = default;
 
-void FrameGraph::append_to_names(std::string_view ending) {
-    declared_->ending = ending;
+Scope FrameGraph::scope(const ScopeDesc& desc) {
+    return {*declared_, desc};
 }
 
-void FrameGraph::append_to_keys(std::optional<std::string_view> ending) {
-    declared_->key_ending = ending;
-}
-
-void FrameGraph::hold_passes(std::optional<ValueHandle<bool>> held) {
-    if (held && !declared_->owns(*held, ResourceKind::value)) {
-        declared_->error(ErrorCode::foreign_handle, "passes are held by a value {}",
-                         declared_->fault_of(*held));
+Scope::Scope(Declaration& declared, const ScopeDesc& desc)
+    : declared_(declared),
+      ending_(declared.ending),
+      key_ending_(declared.key_ending),
+      held_by_(declared.held_by) {
+    declared.ending.insert(0, desc.name_ending);
+    if (desc.key_ending) declared.key_ending = *desc.key_ending;
+    if (!desc.held) return;
+    if (!declared.owns(*desc.held, ResourceKind::value)) {
+        declared.error(ErrorCode::foreign_handle, "passes are held by a value {}",
+                       declared.fault_of(*desc.held));
         return;
     }
-    declared_->held_by = held ? held->resource : detail::none;
-    if (!held) return;
-    const detail::Resource& by = declared_->resources[held->resource];
+    declared.held_by = desc.held->resource;
+    const Resource& by = declared.resources[declared.held_by];
     if (by.lifetime == Lifetime::imported) return;
-    declared_->error(ErrorCode::wrong_usage, "passes are held by {}, which is not imported", by.title());
+    declared.error(ErrorCode::wrong_usage, "passes are held by {}, which is not imported", by.title());
+}
+
+Scope::~Scope() {
+    declared_.ending = std::move(ending_);
+    declared_.key_ending = std::move(key_ending_);
+    declared_.held_by = held_by_;
 }
 
 TextureHandle FrameGraph::texture(std::string_view name, const TextureDesc& desc, Lifetime lifetime) {
@@ -168,7 +171,7 @@ std::optional<FoundTexture> FrameGraph::find_texture(std::string_view name) cons
     const ResourceHandle found = find(*declared_, name, ResourceKind::texture);
     if (found == ResourceHandle{}) return std::nullopt;
     const Resource& resource = declared_->resources[found.resource];
-    return FoundTexture{{found}, resource.storage->texture, note_of(*declared_, resource)};
+    return FoundTexture{{found}, resource.storage->texture, declared_->note_of(resource.note)};
 }
 
 std::optional<FoundBuffer> FrameGraph::find_buffer(std::string_view name) const {
@@ -176,7 +179,7 @@ std::optional<FoundBuffer> FrameGraph::find_buffer(std::string_view name) const 
     if (found == ResourceHandle{}) return std::nullopt;
     const Resource& resource = declared_->resources[found.resource];
     return FoundBuffer{
-        {found}, resource.storage->buffer.stride, resource.element, note_of(*declared_, resource)};
+        {found}, resource.storage->buffer.stride, resource.element, declared_->note_of(resource.note)};
 }
 
 std::vector<std::string_view> FrameGraph::pass_names() const {

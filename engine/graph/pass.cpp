@@ -259,8 +259,9 @@ void Pass::keeps_state() {
     declared_.passes.back().keeps_state = true;
 }
 
-void Pass::set_tag(std::uint32_t tag) {
-    declared_.passes.back().tag = tag;
+void Pass::note(std::any what) {
+    declared_.passes.back().note = detail::size_of(declared_.notes);
+    declared_.notes.push_back(std::move(what));
 }
 
 void Pass::set_function(void* function, void (*invoke)(void*, Execution&)) {

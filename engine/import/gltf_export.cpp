@@ -124,9 +124,9 @@ Json describe_camera(const Camera& camera) {
 }
 
 /// Writes the components of entities.
-class WorldWriter {
+class SceneWriter {
  public:
-    WorldWriter(const World& world, Nodes nodes, Draft& draft)
+    SceneWriter(const World& world, Nodes nodes, Draft& draft)
         : world_(world),
           nodes_(std::move(nodes)),
           draft_(draft),
@@ -306,7 +306,7 @@ std::vector<std::string> export_gltf(const World& world, const std::filesystem::
     std::vector<std::string> warnings;
     const std::vector<OutputFile> files = gltf::naming_file(gltf::utf8_of(path), [&] {
         Draft draft(path);
-        WorldWriter writer(world, choose_nodes(world, without), draft);
+        SceneWriter writer(world, choose_nodes(world, without), draft);
         writer.write_nodes();
         writer.write_animations(without);
         writer.write_environment(without);

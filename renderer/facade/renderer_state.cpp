@@ -48,10 +48,11 @@ class TimedFrame {
 FrameReport to_report(const std::vector<PassRecord>& passes, std::uint64_t index, double cpu_ms) {
     FrameReport report{.index = index, .cpu_ms = cpu_ms, .gpu_ms = 0.0, .waiting_surfels = 0, .passes = {}};
     for (const PassRecord& pass : passes) {
+        const auto* const workload = std::any_cast<Workload>(pass.note);
         report.passes.push_back({.name = std::string(pass.name),
                                  .ran = pass.ran,
                                  .cpu_ms = pass.cpu_ms,
-                                 .workload = static_cast<Workload>(pass.tag)});
+                                 .workload = workload ? *workload : Workload::other});
     }
     return report;
 }

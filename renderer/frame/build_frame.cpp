@@ -30,13 +30,9 @@ LitScene add_scene(FrameGraph& graph, Gpu& gpu, const Configuration& configurati
     return {.scene = scene, .tracing = tracing, .lights = frame.lights, .sky = sky};
 }
 
-/// Begins the part of the graph that belongs to one view.
-void begin_view(FrameGraph& graph, std::size_t index) {
-    graph.append_to_names(view_ending(index));
-}
-
-void end_view(FrameGraph& graph) {
-    graph.append_to_names("");
+/// For the part of the graph that belongs to one view.
+Scope view_scope(FrameGraph& graph, std::size_t index) {
+    return graph.scope({.name_ending = view_ending(index)});
 }
 
 ViewHandles import_view(FrameGraph& graph, const ViewShape& shape) {
@@ -53,25 +49,23 @@ std::optional<ValueHandle<Refinement>> add_cameras(FrameGraph& graph, const Conf
                                                    const LitScene& lit, FrameHandles& frame) {
     std::vector<ValueHandle<CameraView>> requested;
     for (std::size_t i = 0; i < frame.views.size(); ++i) {
-        begin_view(graph, i);
+        const Scope scope = view_scope(graph, i);
         frame.views[i].camera = add_view(graph, frame.views[i].request);
         requested.push_back(frame.views[i].camera);
     }
-    end_view(graph);
     if (!configuration.refinement.enabled) return std::nullopt;
     const auto environment = lit.sky ? std::optional(lit.sky->environment) : std::nullopt;
     frame.refinement_clock = graph.import_value<RefinementClock>("refinement clock");
     const Refined refined = add_refinement(graph, *frame.refinement_clock, lit.scene,
                                            {frame.lights.table, environment}, requested);
     for (std::size_t i = 0; i < frame.views.size(); ++i) {
-        begin_view(graph, i);
+        const Scope scope = view_scope(graph, i);
         ViewHandles& view = frame.views[i];
         view.averaged = refined.averaged[i];
         if (!view.host) {  // whose samples stay where they are
             view.camera = add_refined_view(graph, view.request, refined.averaged[i]);
         }
     }
-    end_view(graph);
     frame.refinement = refined.refinement;
     return refined.refinement;
 }
@@ -133,8 +127,7 @@ struct SurfelInputs {
 ValueHandle<SurfelGuide> add_guide(FrameGraph& graph, Gpu& gpu, const WantedVpls& wanted, const LitScene& lit,
                                    const SurfelInputs& inputs,
                                    ValueHandle<std::vector<ViewRequest>> requests) {
-    graph.append_to_names(" (guide)");
-    graph.hold_passes(inputs.guide_waits);
+    const Scope scope = graph.scope({.name_ending = " (guide)", .held = inputs.guide_waits});
     VplSettings settings = wanted.settings;
     settings.count = guiding_surfels(settings.count);
     settings.seed = 0;  // all sets have the same guide
@@ -147,11 +140,7 @@ ValueHandle<SurfelGuide> add_guide(FrameGraph& graph, Gpu& gpu, const WantedVpls
     SurfelSources sources{.lights = lit.lights, .emitters = wanted.emitters, .sky = {}};
     if (lit.sky) sources.sky = add_sky_patches(graph, gpu, *lit.sky, std::nullopt);
     const Vpls light = add_surfel_light(graph, gpu, lit.tracing, visibility, sources, settings.bounces, {});
-    const auto guide =
-        add_surfel_guide(graph, gpu, lit.scene, lit.tracing, requests, spread, visibility, light);
-    graph.hold_passes(std::nullopt);
-    graph.append_to_names("");
-    return guide;
+    return add_surfel_guide(graph, gpu, lit.scene, lit.tracing, requests, spread, visibility, light);
 }
 
 SurfelInputs add_surfel_inputs(FrameGraph& graph, Gpu& gpu, const WantedVpls& wanted, const LitScene& lit,
@@ -185,20 +174,16 @@ struct TracedSet {
     std::optional<ValueHandle<WaitingSurfels>> waiting;  ///< SurfelUpdates::waiting
 };
 
-/// What is declared from now on belongs to the set in that place, also in graphs in which it has another
-/// role.
-void begin_place(FrameGraph& graph, std::optional<std::uint32_t> place) {
-    if (place) graph.append_to_keys(*place == 0 ? "" : " (odd set)");
-}
-
-void end_place(FrameGraph& graph) {
-    graph.append_to_keys(std::nullopt);
+/// For what belongs to the set in that place, also in graphs in which the set has another role.
+Scope place_scope(FrameGraph& graph, std::optional<std::uint32_t> place) {
+    if (!place) return graph.scope({});
+    return graph.scope({.key_ending = *place == 0 ? "" : " (odd set)"});
 }
 
 TracedSet add_traced_set(FrameGraph& graph, Gpu& gpu, const WantedVpls& wanted, const LitScene& lit,
                          const SurfelSetChoice& set, const SurfelInputs& inputs) {
     const auto clock = wanted.settings.updates > 0 ? inputs.update_clock : std::nullopt;
-    begin_place(graph, set.place);
+    const Scope scope = place_scope(graph, set.place);
     const ValueHandle<SpreadSurfels> spread =
         add_surfel_spread(graph, lit.scene, set, {inputs.foci.foci, inputs.guide, clock}, wanted.settings);
     const Surfels surfels =
@@ -212,7 +197,6 @@ TracedSet add_traced_set(FrameGraph& graph, Gpu& gpu, const WantedVpls& wanted, 
     const auto tasks = updates ? std::optional(updates->tasks) : std::nullopt;
     const SurfelVisibility visibility =
         add_surfel_visibility(graph, gpu, lit.tracing, surfels, inputs.motion, wanted.balanced, tasks);
-    end_place(graph);
     return {.visibility = visibility,
             .mapped = {surfels.counts, MappedSurfels{surfels.surfels, surfels.maps, inputs.motion, tasks}},
             .waiting = updates ? std::optional(updates->waiting) : std::nullopt};
@@ -258,13 +242,12 @@ struct MappedSet {
 MappedSet add_mapped_set(FrameGraph& graph, Gpu& gpu, const LitScene& lit,
                          const VplVisibilitySettings& visibility, const MappedVpls& mapped,
                          ValueHandle<VplCounts> counts, std::optional<std::uint32_t> place) {
-    begin_place(graph, place);
+    const Scope scope = place_scope(graph, place);
     MappedSet set{add_vpl_constants(graph, gpu, lit.tracing.metrics, counts, surfel_maps(mapped), visibility),
                   {}};
     if (visibility.method == VplVisibility::maps) {
         set.maps = add_vpl_maps(graph, gpu, lit.tracing, mapped, set.common);
     }
-    end_place(graph);
     return set;
 }
 
@@ -273,12 +256,13 @@ ValueHandle<WaitingSurfels> prepare_next_set(FrameGraph& graph, Gpu& gpu, const 
                                              const LitScene& lit, const SurfelSetChoice& choice,
                                              const SurfelInputs& inputs,
                                              const VplVisibilitySettings& visibility) {
-    graph.append_to_names(" (next set)");
-    const TracedSet set = add_traced_set(graph, gpu, wanted, lit, choice, inputs);
-    const MappedSet mapped =
-        add_mapped_set(graph, gpu, lit, visibility, set.mapped, set.mapped.counts, choice.place);
-    graph.append_to_names("");
-    graph.add("keep-next-set", [&](Pass& pass) {
+    const auto [set, mapped] = [&] {
+        const Scope scope = graph.scope({.name_ending = " (next set)"});
+        const TracedSet traced = add_traced_set(graph, gpu, wanted, lit, choice, inputs);
+        return std::pair(traced, add_mapped_set(graph, gpu, lit, visibility, traced.mapped,
+                                                traced.mapped.counts, choice.place));
+    }();
+    graph.add("keep-next-set", [&set = set, &mapped = mapped](Pass& pass) {
         pass.side_effect();
         pass.read(set.visibility.rows, Usage::storage);
         if (!mapped.maps) return;
@@ -293,16 +277,14 @@ VplLight add_other_set(FrameGraph& graph, Gpu& gpu, WantedVpls wanted, const Lit
                        const std::optional<SurfelInputs>& inputs, VplVisibilitySettings visibility) {
     wanted.settings.seed += 0x80000000U;  // far from those of refinement
     wanted.settings.updates = 0;
-    graph.append_to_names(" (other set)");
+    const Scope scope = graph.scope({.name_ending = " (other set)"});
     const VplSet set = add_vpl_set(graph, gpu, wanted, lit, {}, inputs);
     const bool occluded = visibility.method != VplVisibility::none;
     if (occluded) visibility.method = VplVisibility::rays;
-    const VplLight light{.vpls = set.vpls,
-                         .common = add_vpl_constants(graph, gpu, lit.tracing.metrics, set.vpls.counts,
-                                                     surfel_maps(set.mapped), visibility),
-                         .rays = occluded ? std::optional(lit.tracing) : std::nullopt};
-    graph.append_to_names("");
-    return light;
+    return {.vpls = set.vpls,
+            .common = add_vpl_constants(graph, gpu, lit.tracing.metrics, set.vpls.counts,
+                                        surfel_maps(set.mapped), visibility),
+            .rays = occluded ? std::optional(lit.tracing) : std::nullopt};
 }
 
 /// The light of the wanted VPLs, if any.
@@ -413,10 +395,9 @@ FrameHandles build_frame(FrameGraph& graph, Gpu& gpu, const Configuration& confi
                          const FrameShape& shape, std::span<const Extension> extensions) {
     FrameHandles frame;
     for (std::size_t i = 0; i < shape.views.size(); ++i) {
-        begin_view(graph, i);
+        const Scope scope = view_scope(graph, i);
         frame.views.push_back(import_view(graph, shape.views[i]));
     }
-    end_view(graph);
 
     const LitScene lit = add_scene(graph, gpu, configuration, shape, frame);
     const std::optional<ValueHandle<Refinement>> refinement = add_cameras(graph, configuration, lit, frame);
@@ -425,14 +406,13 @@ FrameHandles build_frame(FrameGraph& graph, Gpu& gpu, const Configuration& confi
     if (shape.receivers) light_receivers(graph, gpu, configuration, lit, vpls, frame);
     const SharedFrame shared{configuration, shape.contents, shape.quality, lit, vpls, extensions};
     for (std::size_t i = 0; i < frame.views.size(); ++i) {
-        begin_view(graph, i);
+        const Scope scope = view_scope(graph, i);
         build_view(graph, gpu, shared, shape.views[i], i, frame.views[i]);
     }
     for (std::size_t i = 0; i < frame.views.size(); ++i) {
-        begin_view(graph, i);
+        const Scope scope = view_scope(graph, i);
         keep_parts(graph, shape.views[i].keep, frame.views[i]);
     }
-    end_view(graph);
     return frame;
 }
 

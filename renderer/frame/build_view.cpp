@@ -314,7 +314,7 @@ void add_mirrored(FrameGraph& graph, Gpu& gpu, const SharedFrame& shared, const 
         const Sky& sky = *shared.lit.sky;
         sources.sky = {.sky = sky, .picture = *sky_picture, .tree = add_sky_tree(graph, gpu, sky)};
     }
-    graph.append_to_names(" (mirrored)" + view_ending(parts.index));
+    const Scope scope = graph.scope({.name_ending = " (mirrored)"});
     const Surfaces surfaces = surfaces_of(parts);
     const MirroredSurfaces mirrored =
         add_mirror_rays(graph, gpu, surfaces, shared.lit.tracing, sources, view, out.averaged);
@@ -322,7 +322,6 @@ void add_mirrored(FrameGraph& graph, Gpu& gpu, const SharedFrame& shared, const 
         shade_mirrored(graph, gpu, shared, view, out, mirrored.surfaces, parts.indirect.has_value());
     parts.radiance =
         add_mirror_resolve(graph, gpu, surfaces, sources, mirrored, reflected, view, *parts.radiance);
-    graph.append_to_names(view_ending(parts.index));
 }
 
 /// What the surfaces and the sky emit.
@@ -337,6 +336,19 @@ void add_sources(FrameGraph& graph, Gpu& gpu, const SharedFrame& shared, const S
     }
 }
 
+/// The surfaces in the size of the target, and the view of that size.
+std::pair<Surfaces, ViewData> add_target_surfaces(FrameGraph& graph, Gpu& gpu, const SceneData& seen,
+                                                  glm::uvec2 target, const ViewData& view,
+                                                  const ViewHandles& out) {
+    const Scope scope = graph.scope({.name_ending = " (target's size)"});
+    ViewData in_target = add_view_upload(graph, gpu, view.camera, target);
+    in_target.workload = Workload::other;  // the same for every size of the picture
+    if (out.host) {
+        return {add_host_surfaces(graph, gpu, *out.host, in_target, false, std::nullopt), in_target};
+    }
+    return {add_depth_prepass(graph, gpu, seen, in_target), in_target};
+}
+
 /// Draws the picture to the target. If it has fewer pixels, the surfaces are found once more in the size of
 /// the target.
 void show(FrameGraph& graph, Gpu& gpu, const SceneData& seen, const Display& display, glm::uvec2 target,
@@ -345,13 +357,7 @@ void show(FrameGraph& graph, Gpu& gpu, const SceneData& seen, const Display& dis
         return add_tone_map(graph, gpu, *parts.radiance, out.target, out.picture, display);
     }
     const TextureHandle colours = add_tone_map(graph, gpu, *parts.radiance, view.size, display);
-    graph.append_to_names(" (target's size)" + view_ending(parts.index));
-    ViewData target_view = add_view_upload(graph, gpu, view.camera, target);
-    target_view.workload = Workload::other;  // the same for every size of the picture
-    const Surfaces in_target =
-        out.host ? add_host_surfaces(graph, gpu, *out.host, target_view, false, std::nullopt)
-                 : add_depth_prepass(graph, gpu, seen, target_view);
-    graph.append_to_names(view_ending(parts.index));
+    const auto [in_target, target_view] = add_target_surfaces(graph, gpu, seen, target, view, out);
     add_enlarge(graph, gpu, {colours, *parts.depth, in_target, target_view}, out.target, out.picture);
 }
 

@@ -91,6 +91,13 @@ void toggle_clips(World& world) {
     }
 }
 
+ClipPlayback::ClipPlayback() : systems_(std::make_unique<GraphRuntime>()) {
+    FrameGraph graph;
+    handles_ = add_animation(graph);
+    systems_->switch_to(compile(std::move(graph)).take());
+    systems_->set(handles_.seconds, seconds_);
+}
+
 void ClipPlayback::step(World& world) {
     const std::vector<Entity> players = animation_players(world);
     const auto set_playing = [&](bool on) {
@@ -105,25 +112,24 @@ void ClipPlayback::step(World& world) {
 
 void ClipPlayback::seek(World& world, Entity player, double time) {
     world.edit<AnimationPlayer>(player, [&](AnimationPlayer& edited) { edited.time = time; });
-    of_clips_ = apply_animation(world, player);
-    deform(world);
+    of_seek_ = apply_animation(world, player);
+    systems_->run(world);
 }
 
 void ClipPlayback::advance(World& world, double seconds) {
-    if (plays_clips(world)) of_clips_ = advance_animations(world, seconds);
-    deform(world);
+    if (seconds != 0.0) of_seek_.clear();
+    seconds_ += seconds;
+    systems_->set(handles_.seconds, seconds_);
+    systems_->run(world);
 }
 
 AnimationFaults ClipPlayback::faults() const {
-    AnimationFaults all = of_clips_;
-    all.insert(all.end(), of_meshes_.begin(), of_meshes_.end());
+    AnimationFaults all = of_seek_;
+    for (const auto handle : {handles_.animation_faults, handles_.mesh_faults}) {
+        const AnimationFaults& faults = systems_->value(handle);
+        all.insert(all.end(), faults.begin(), faults.end());
+    }
     return all;
-}
-
-void ClipPlayback::deform(World& world) {
-    if (deformed_ == world.revision()) return;
-    of_meshes_ = deformer_.update(world);
-    deformed_ = world.revision();
 }
 
 }  // namespace candela::sandbox

@@ -5,6 +5,7 @@
 #include <string>
 #include <vector>
 
+#include <candela/graph/execute.hpp>
 #include <candela/scene/animate.hpp>
 #include <candela/scene/animation.hpp>
 
@@ -36,6 +37,8 @@ void toggle_clips(World& world);
 /// these.
 class ClipPlayback {
  public:
+    ClipPlayback();
+
     /// Moves all players on by one frame and pauses them.
     void step(World& world);
     /// Shows a player's clip at a time, seconds.
@@ -48,12 +51,10 @@ class ClipPlayback {
     [[nodiscard]] AnimationFaults faults() const;
 
  private:
-    void deform(World& world);
-
-    MeshDeformer deformer_;
-    Tick deformed_ = 0;  // revision of the world when its meshes were deformed
-    AnimationFaults of_clips_;
-    AnimationFaults of_meshes_;
+    std::unique_ptr<GraphRuntime> systems_;
+    AnimationSystems handles_;
+    double seconds_ = 0.0;     // played so far
+    AnimationFaults of_seek_;  // of the player whose time was set last
 };
 
 }  // namespace candela::sandbox

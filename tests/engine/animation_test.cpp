@@ -21,6 +21,8 @@
 #include <glm/gtc/quaternion.hpp>
 #include <glm/matrix.hpp>
 
+#include <candela/graph/compile.hpp>
+#include <candela/graph/execute.hpp>
 #include <candela/scene/animate.hpp>
 #include <candela/scene/components.hpp>
 #include <candela/scene/hierarchy.hpp>
@@ -245,6 +247,46 @@ TEST_CASE("morph weights of all interpolations") {
                   sampler_of(Interpolation::cubic_spline, {0, 2}, {9, 9, 1, 2, 0, 0, 0, 0, 3, 6, 9, 9}));
     spline.at(1.0);
     CHECK(spline.world.get<MorphWeights>(spline.target).values == std::vector<float>{2.0F, 4.0F});
+}
+
+TEST_CASE("as systems of a graph, players follow the host's clock and deform meshes in the same frame") {
+    Moving moving(AnimatedProperty::morph_weights, sampler_of(Interpolation::linear, {0, 4}, {0, 1}));
+    Mesh mesh = mesh_of({vertex_at({0, 0, 0}), vertex_at({1, 0, 0}), vertex_at({0, 1, 0})}, {0, 1, 2});
+    MorphTarget raised;
+    raised.positions.assign(3, glm::vec3(0, 0, 8));
+    mesh.primitives[0].targets = {raised};
+    moving.world.set(moving.target, MeshInstance{std::make_shared<const Mesh>(std::move(mesh))});
+
+    FrameGraph graph;
+    const AnimationSystems systems = add_animation(graph);
+    GraphRuntime runtime;
+    runtime.switch_to(compile(std::move(graph)).take());
+    const auto ran_at = [&](double seconds) {
+        runtime.set(systems.seconds, seconds);
+        std::string names;
+        for (const PassRecord& pass : runtime.run(moving.world).passes) {
+            if (pass.ran) names += std::string(pass.name) + " ";
+        }
+        return names;
+    };
+    const auto depth = [&] {
+        return moving.world.get<DeformedMesh>(moving.target).vertices->front().front().position.z;
+    };
+    CHECK(ran_at(10.0) == "animation deformation ");  // the clock begins where the host's is
+    CHECK(depth() == 0.0F);
+    CHECK(ran_at(11.0) == "animation deformation ");
+    CHECK(depth() == 2.0F);
+    CHECK(ran_at(11.0).empty());
+    moving.world.edit<AnimationPlayer>(moving.player,
+                                       [](AnimationPlayer& player) { player.playing = false; });
+    CHECK(ran_at(12.0) == "animation ");
+    CHECK(depth() == 2.0F);
+    CHECK(runtime.value(systems.animation_faults).empty());
+
+    moving.world.destroy(moving.target);
+    moving.world.edit<AnimationPlayer>(moving.player, [](AnimationPlayer& player) { player.playing = true; });
+    static_cast<void>(ran_at(13.0));
+    CHECK(runtime.value(systems.animation_faults).size() == 1);
 }
 
 TEST_CASE("players loop, end, run backwards and rest") {

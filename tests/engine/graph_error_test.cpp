@@ -215,7 +215,7 @@ TEST_CASE("graph error: wrong usage and wrong format are named") {
 
 TEST_CASE("graph error: passes held by what no host sets") {
     FrameGraph graph;
-    graph.hold_passes(graph.value<bool>("own"));
+    static_cast<void>(graph.scope({.held = graph.value<bool>("own")}));
     const std::vector<CompileError> errors = errors_of(graph);
     REQUIRE(errors.size() == 1);
     CHECK(errors[0] ==
@@ -322,7 +322,7 @@ TEST_CASE("graph error: names used twice") {
                                     "two textures that are kept or imported are called 'kept'"});
 }
 
-TEST_CASE("the same passes can be declared twice if something is appended to their names") {
+TEST_CASE("the same passes can be declared twice in scopes with other names") {
     FrameGraph graph;
     const auto declare = [&] {
         const TextureHandle image = graph.texture("image", colour, Lifetime::persistent);
@@ -332,9 +332,10 @@ TEST_CASE("the same passes can be declared twice if something is appended to the
         });
     };
     declare();
-    graph.append_to_names(" 2");
-    declare();
-    graph.append_to_names("");
+    {
+        const Scope scope = graph.scope({.name_ending = " 2"});
+        declare();
+    }
     graph.add("last", [](Pass& pass) { pass.side_effect(); });
     const std::string text = describe_text(describe(compile(std::move(graph)).take()));
     for (const std::string line :

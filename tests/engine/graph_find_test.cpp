@@ -55,8 +55,10 @@ TEST_CASE_FIXTURE(Find, "the description of a texture, by its handle") {
 TEST_CASE_FIXTURE(Find, "the names of the passes so far") {
     CHECK(graph.pass_names().empty());
     const TextureHandle drawn = draw("surfaces", {}, texture("scene"));
-    graph.append_to_names(" 2");
-    static_cast<void>(draw("sky", {}, drawn));
+    {
+        const Scope scope = graph.scope({.name_ending = " 2"});
+        static_cast<void>(draw("sky", {}, drawn));
+    }
     const std::vector<std::string_view> names = graph.pass_names();
     CHECK(names == std::vector<std::string_view>{"surfaces", "sky 2"});
     const CompileResult compiled = compile(std::move(graph));
@@ -66,9 +68,10 @@ TEST_CASE_FIXTURE(Find, "the names of the passes so far") {
 
 TEST_CASE_FIXTURE(Find, "names have the endings of views, and of equal names, the last is found") {
     const TextureHandle first = draw("draw", {}, texture("depth"));
-    graph.append_to_names(" 2");
-    const TextureHandle second = draw("draw", {}, texture("depth"));
-    graph.append_to_names("");
+    const TextureHandle second = [&] {
+        const Scope scope = graph.scope({.name_ending = " 2"});
+        return draw("draw", {}, texture("depth"));
+    }();
     CHECK(graph.find_texture("depth")->handle == first);
     CHECK(graph.find_texture("depth 2")->handle == second);
     const TextureHandle again = draw("draw again", {}, texture("depth"));

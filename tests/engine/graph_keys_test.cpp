@@ -3,6 +3,8 @@
 #include <doctest/doctest.h>
 
 #include <string>
+#include <string_view>
+#include <vector>
 
 #include "tests/engine/graph_fixture.hpp"
 
@@ -18,10 +20,10 @@ struct TurnFixture : GraphFixture {
     void show(int place) {
         graph = FrameGraph();
         const ValueHandle<int> shown = make(place);
-        graph.append_to_names(" (next)");
-        const ValueHandle<int> next = make(1 - place);
-        graph.append_to_names("");
-        graph.append_to_keys(std::nullopt);
+        const ValueHandle<int> next = [&] {
+            const Scope scope = graph.scope({.name_ending = " (next)"});
+            return make(1 - place);
+        }();
         graph.add("show", [&](Pass& pass) {
             pass.side_effect();
             pass.read(shown);
@@ -32,7 +34,7 @@ struct TurnFixture : GraphFixture {
     }
 
     ValueHandle<int> make(int place) {
-        graph.append_to_keys(place == 0 ? "" : " (odd)");
+        const Scope scope = graph.scope({.key_ending = place == 0 ? "" : " (odd)"});
         const TextureHandle drawn = draw("draw", {}, texture("picture", Lifetime::persistent));
         return graph.add("make", [&](Pass& pass) {
             pass.read(drawn, Usage::sampled);
@@ -78,26 +80,37 @@ TEST_CASE_FIXTURE(TurnFixture, "what takes its turn has another name, and is as 
     CHECK(objects_[1] == second);
 }
 
-TEST_CASE_FIXTURE(GraphFixture, "a key that two passes or two kept resources have is an error") {
-    SUBCASE("passes") {
-        graph.append_to_keys(" (odd)");
+TEST_CASE_FIXTURE(GraphFixture,
+                  "a scope ends where its object does, and the ending of an inner one comes first") {
+    {
+        const Scope outer = graph.scope({.name_ending = " 2"});
+        {
+            const Scope inner = graph.scope({.name_ending = " (mirrored)"});
+            draw("draw", {}, texture("a"));
+        }
         draw("draw", {}, texture("a"));
-        graph.append_to_names(" 2");
-        draw("draw", {}, texture("b"));
+    }
+    draw("draw", {}, texture("a"));
+    CHECK(graph.pass_names() == std::vector<std::string_view>{"draw (mirrored) 2", "draw 2", "draw"});
+}
+
+TEST_CASE_FIXTURE(GraphFixture, "a key that two passes or two kept resources have is an error") {
+    const auto declare = [&](std::string_view key, std::string_view second, Lifetime lifetime) {
+        const Scope keys = graph.scope({.key_ending = key});
+        draw("draw", {}, texture("a", lifetime));
+        const Scope names = graph.scope({.name_ending = " 2"});
+        draw(second, {}, texture("a", lifetime));
+    };
+    SUBCASE("passes") {
+        declare(" (odd)", "draw", Lifetime::transient);
         CHECK(error_of(std::move(graph)) == "two passes have the key 'draw (odd)'");
     }
     SUBCASE("resources") {
-        graph.append_to_keys("");
-        draw("first", {}, texture("a", Lifetime::persistent));
-        graph.append_to_names(" 2");
-        draw("second", {}, texture("a", Lifetime::persistent));
+        declare("", "draw again", Lifetime::persistent);
         CHECK(error_of(std::move(graph)) == "two textures that are kept or imported have the key 'a'");
     }
     SUBCASE("transients have none") {
-        graph.append_to_keys("");
-        draw("first", {}, texture("a"));
-        graph.append_to_names(" 2");
-        draw("second", {}, texture("a"));
+        declare("", "draw again", Lifetime::transient);
         CHECK(compile(std::move(graph)).errors.empty());
     }
 }

@@ -464,20 +464,21 @@ TEST_CASE_FIXTURE(GraphFixture,
                   "graph run: held passes keep what they have written, and run once they are not held") {
     const auto power = graph.import_value<int>("power");
     const auto held = graph.import_value<bool>("held");
-    graph.hold_passes(held);
-    const auto doubled = graph.add("double", [&](Pass& pass) {
-        pass.read(power);
-        const auto written = pass.write(graph.value<int>("doubled"));
-        pass.run([=](Execution& run) { run.set(written, 2 * run.value(power)); });
-        return written;
-    });
-    const auto negated = graph.add("negate", [&](Pass& pass) {
-        pass.read(doubled);
-        const auto written = pass.write(graph.value<int>("negated"));
-        pass.run([=](Execution& run) { run.set(written, -run.value(doubled)); });
-        return written;
-    });
-    graph.hold_passes(std::nullopt);
+    const auto negated = [&] {
+        const Scope scope = graph.scope({.held = held});
+        const auto doubled = graph.add("double", [&](Pass& pass) {
+            pass.read(power);
+            const auto written = pass.write(graph.value<int>("doubled"));
+            pass.run([=](Execution& run) { run.set(written, 2 * run.value(power)); });
+            return written;
+        });
+        return graph.add("negate", [&](Pass& pass) {
+            pass.read(doubled);
+            const auto written = pass.write(graph.value<int>("negated"));
+            pass.run([=](Execution& run) { run.set(written, -run.value(doubled)); });
+            return written;
+        });
+    }();
     int shown = 0;
     graph.add("show", [&](Pass& pass) {
         pass.side_effect();
@@ -527,8 +528,8 @@ TEST_CASE_FIXTURE(GraphFixture, "the record carries what the host says about pas
         graph.add(name, [&](Pass& pass) {
             pass.side_effect();
             if (room) {
-                pass.tag(Room::kitchen);
-                pass.tag(*room);
+                pass.note(Room::kitchen);
+                pass.note(*room);
             }
         });
     };
@@ -536,8 +537,9 @@ TEST_CASE_FIXTURE(GraphFixture, "the record carries what the host says about pas
     work("sleep", std::nullopt);
     switch_to();
     const auto& passes = runtime.run(world).passes;
-    CHECK(passes[0].tag == 7);
-    CHECK(passes[1].tag == 0);
+    REQUIRE(std::any_cast<Room>(passes[0].note) != nullptr);
+    CHECK(*std::any_cast<Room>(passes[0].note) == Room::bath);
+    CHECK(passes[1].note == nullptr);
 }
 
 }  // namespace

@@ -241,6 +241,24 @@ TEST_CASE_FIXTURE(Systems, "graph system: a world that is const cannot be run wi
 }
 
 TEST_CASE_FIXTURE(Systems,
+                  "graph system: a runtime without a back end runs them, and has no room for textures") {
+    add_motion();
+    GraphRuntime systems;
+    systems.switch_to(compile(std::move(graph)).take());
+    systems.set(seconds, 2.0F);
+    CHECK(ran(systems.run(world)) == "motion");
+    CHECK(world.get<Place>(entity) == Place{4.0F});
+    FrameGraph drawing;
+    drawing.add("draw", [&](Pass& pass) {
+        (void)pass.write(drawing.texture("picture", colour), Usage::storage);
+        pass.side_effect();
+    });
+    CHECK_THROWS_WITH_AS(systems.switch_to(compile(std::move(drawing)).take()),
+                         "the runtime has no back end for 'picture'", GraphError);
+    CHECK(systems.graph()->pass_count() == 1);
+}
+
+TEST_CASE_FIXTURE(Systems,
                   "graph system: verification neither runs systems again nor blames who read before them") {
     runtime.set_verification(true);
     int reads = 0;

@@ -13,10 +13,10 @@
 #include <candela/graph/compile.hpp>
 #include <candela/graph/describe.hpp>
 #include <candela/graph/execute.hpp>
+#include <candela/graph/recording_backend.hpp>
 #include "engine/graph/details/plan.hpp"
 #include "tests/engine/graph_machine.hpp"
 #include "tests/engine/graph_random.hpp"
-#include <candela/graph/recording_backend.hpp>
 #include "tests/fuzz/fuzz.hpp"
 
 using namespace candela;
@@ -74,7 +74,7 @@ class Declarer {
 
  private:
     void declare_step() {
-        switch (choices_(9)) {
+        switch (choices_(8)) {
             case 0:
                 handles_.emplace_back(graph_.texture(name("r"), texture(), lifetime()));
                 return;
@@ -89,13 +89,18 @@ class Declarer {
                 declare_derived();
                 return;
             case 4:
-                graph_.append_to_names("'");
-                return;
-            case 5:
-                graph_.append_to_keys(choices_(2) == 0 ? std::optional<std::string_view>("*") : std::nullopt);
+                declare_in_scope();
                 return;
             default:
                 graph_.add(name("p"), [this](Pass& pass) { declare_pass(pass); });
+        }
+    }
+
+    void declare_in_scope() {
+        const auto key = choices_(2) == 0 ? std::optional<std::string_view>("*") : std::nullopt;
+        const Scope scope = graph_.scope({.name_ending = "'", .key_ending = key});
+        for (std::size_t steps = choices_(4); steps > 0 && !choices_.at_end(); --steps) {
+            declare_step();
         }
     }
 

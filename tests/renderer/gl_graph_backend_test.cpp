@@ -3,6 +3,9 @@
 #include <array>
 #include <vector>
 
+#include <candela/gl_backend.hpp>
+#include <candela/graph/compile.hpp>
+#include <candela/graph/execute.hpp>
 #include "renderer/gl/graph_backend.hpp"
 #include "tests/renderer/context_fixture.hpp"
 
@@ -226,6 +229,44 @@ TEST_CASE_FIXTURE(GlFixture, "each barrier has the bits that GL defines") {
     GraphBackend backend(device);
     backend.barrier(Barrier::storage | Barrier::texture_fetch);
     CHECK(device.gl().GetError() == GL_NO_ERROR);
+}
+
+TEST_CASE_FIXTURE(GlFixture, "a host's graph draws with GL, whatever state the host and its passes leave") {
+    GlBackend gl(context->get_proc());
+    FrameGraph graph;
+    const auto cleared = [&](std::string_view name, TextureHandle target, int width, float value) {
+        return graph.add(name, [&](Pass& pass) {
+            pass.run([this, value, width](Execution&) {
+                device.gl().Enable(GL_SCISSOR_TEST);  // is off again before the next pass
+                device.gl().Scissor(0, 0, width, 2);
+                const std::array colour{value, value, value, value};
+                device.gl().ClearBufferfv(GL_COLOR, 0, colour.data());
+            });
+            return pass.write(target, Usage::colour_target);
+        });
+    };
+    const TextureHandle blank = graph.texture("picture", {{4, 2}, Format::r32f}, Lifetime::persistent);
+    const TextureHandle picture = cleared("part", cleared("all", blank, 4, 3.0F), 1, 5.0F);
+    graph.add("end", [&](Pass& pass) {
+        pass.read(picture, Usage::copy);
+        pass.side_effect();
+        pass.run([this](Execution&) { CHECK(device.gl().IsEnabled(GL_SCISSOR_TEST) == GL_FALSE); });
+    });
+    GraphRuntime runtime(gl.backend());
+    runtime.switch_to(compile(std::move(graph)).take());
+    device.gl().Enable(GL_RASTERIZER_DISCARD);  // the host's, which would keep all from being cleared
+    gl.begin_frame(7);
+    runtime.run(World());
+    gl.end_frame();
+    std::vector<float> texels(8);
+    device.gl().GetTextureSubImage(runtime.object(picture), 0, 0, 0, 0, 4, 2, 1, GL_RED, GL_FLOAT,
+                                   8 * sizeof(float), texels.data());
+    CHECK(texels == std::vector<float>{5, 3, 3, 3, 5, 3, 3, 3});
+    device.gl().Finish();
+    const std::vector<FrameTime> times = gl.take_times();
+    REQUIRE(times.size() == 1);
+    CHECK(times[0].frame == 7);
+    CHECK(times[0].passes.size() == 3);
 }
 
 }  // TEST_SUITE("gl graph backend")

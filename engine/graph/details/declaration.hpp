@@ -39,7 +39,7 @@ struct Storage {
     [[nodiscard]] std::size_t hash() const;
 };
 
-/// What something is called in a graph, and by what it is found again in another: FrameGraph::append_to_keys.
+/// What something is called in a graph, and by what it is found again in another: ScopeDesc::key_ending.
 struct Name {
     std::string_view name;
     std::string_view key;
@@ -103,8 +103,8 @@ struct PassNode {
     bool side_effect = false;
     bool keeps_state = false;
     bool writes_entities = false;
-    std::uint32_t held_by = none;  // resource: FrameGraph::hold_passes
-    std::uint32_t tag = 0;         // see Pass::tag
+    std::uint32_t held_by = none;  // resource: ScopeDesc::held
+    std::uint32_t note = none;     // see Pass::note
 };
 
 /// The content of a FrameGraph in flat arrays. Names, functions and parameters are stored in the arena.
@@ -121,11 +121,15 @@ struct Declaration {
     [[nodiscard]] std::span<const Parameter> parameters_of(std::uint32_t pass) const {
         return part(parameters, pass, &PassNode::first_parameter);
     }
+    /// Of a pass or a resource; null without one.
+    [[nodiscard]] const std::any* note_of(std::uint32_t note) const {
+        return note == none ? nullptr : &notes[note];
+    }
     /// Whether the handle is of this graph and names a resource of this kind.
     [[nodiscard]] bool owns(ResourceHandle handle, ResourceKind kind) const;
     /// What is wrong with a handle that is not one of these, to follow "a texture".
     [[nodiscard]] std::string_view fault_of(ResourceHandle handle) const;
-    /// Copies the name, with the endings of FrameGraph::append_to_names and append_to_keys.
+    /// Copies the name, with the endings of ScopeDesc.
     [[nodiscard]] Name store_name(std::string_view name);
     template <class... Args>
     void error(ErrorCode code, fmt::format_string<Args...> format, Args&&... args) {

@@ -91,7 +91,7 @@ struct Step {
     bool writes_import = false;
     bool keeps_state = false;
     bool writes_world = false;     // components or entities
-    std::uint32_t held_by = none;  // slot of the value that holds the pass: FrameGraph::hold_passes
+    std::uint32_t held_by = none;  // slot of the value that holds the pass: ScopeDesc::held
     bool is_held = false;          // in this frame
     bool has_run = false;
 };

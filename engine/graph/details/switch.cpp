@@ -4,6 +4,8 @@
 #include <unordered_map>
 #include <utility>
 
+#include <fmt/format.h>
+
 #include <candela/graph/execute.hpp>
 #include "engine/graph/details/state.hpp"
 
@@ -45,8 +47,33 @@ class UnusedObjects {
     std::unordered_multimap<std::size_t, detail::Slot*> by_hash_;
 };
 
+/// The back end of graphs without GPU resources.
+class NoBackend final : public Backend {
+ public:
+    ObjectId create_texture(std::string_view name, const TextureDesc& /*desc*/) override { refuse(name); }
+    ObjectId create_buffer(std::string_view name, const BufferDesc& /*desc*/) override { refuse(name); }
+    void destroy_texture(ObjectId /*texture*/) override {}
+    void destroy_buffer(ObjectId /*buffer*/) override {}
+    void barrier(Barrier /*bits*/) override {}
+    void begin_pass(std::string_view /*name*/, std::uint32_t /*index*/,
+                    const PassTargets* /*targets*/) override {}
+    void end_pass() override {}
+    void bind_texture(ObjectId /*texture*/, const TextureDesc& /*desc*/, Binding /*binding*/) override {}
+    void bind_buffer(ObjectId /*buffer*/, Binding /*binding*/) override {}
+    std::uint64_t texture_digest(ObjectId /*texture*/) override { return 0; }
+    std::uint64_t buffer_digest(ObjectId /*buffer*/) override { return 0; }
+
+ private:
+    [[noreturn]] static void refuse(std::string_view name) {
+        throw GraphError(fmt::format("the runtime has no back end for '{}'", name));
+    }
+};
+
+NoBackend no_backend;
+
 }  // namespace
 
+GraphRuntime::GraphRuntime() : GraphRuntime(no_backend) {}
 GraphRuntime::GraphRuntime(Backend& backend) : backend_(backend), state_(std::make_unique<detail::State>()) {}
 
 GraphRuntime::~GraphRuntime() {
@@ -64,7 +91,7 @@ void GraphRuntime::switch_to(CompiledGraph graph) {
     passes.reserve(state.step_count());
     for (std::uint32_t position = 0; position < state.step_count(); ++position) {
         const detail::PassNode& pass = graph.declared().passes[graph.plan().order[position]];
-        passes.push_back({.name = pass.name, .tag = pass.tag});
+        passes.push_back({.name = pass.name, .note = graph.declared().note_of(pass.note)});
     }
     if (verifying_) state.contents.resize(state.versions.size());
     std::vector<detail::Slot> unused = free_pool_;

@@ -4,7 +4,7 @@
 
 namespace candela {
 
-/// What the GPU time of a pass grows with. A pass declares it with Pass::tag; by this the frame budget
+/// What the GPU time of a pass grows with. A pass declares it with Pass::note; by this the frame budget
 /// predicts what a frame of another quality costs. An extension's passes may declare it too.
 enum class Workload : std::uint8_t {
     other,       ///< neither of the following

@@ -131,7 +131,7 @@ GatheredVpls add_vpl_gather(FrameGraph& graph, Gpu& gpu, const Surfaces& surface
                             BufferHandle<std::uint32_t> order, const ViewData& view, std::uint32_t interleave,
                             bool directed) {
     return graph.add("vpl-gather", [&](Pass& pass) {
-        pass.tag(Workload::pixels_vpls);
+        pass.note(Workload::pixels_vpls);
         read_geometry(pass, surfaces);
         pass.read(order, {Usage::storage, BINDING_VPL_ORDER});
         read_vpl_light(pass, light);

@@ -33,7 +33,7 @@ void reconstruct(const Gpu& gpu, const gl::Program& program, const Pixels& pixel
 
 GatheredLight add_rows(FrameGraph& graph, Gpu& gpu, const Pixels& pixels, const GatheredLight& gathered) {
     return graph.add("vpl-reconstruct-rows", [&](Pass& pass) {
-        pass.tag(Workload::pixels);
+        pass.note(Workload::pixels);
         read_pixels(pass, pixels);
         read_gathered(pass, gathered);
         const gl::Program& program = gpu.program(
@@ -56,7 +56,7 @@ std::uint32_t row_words(glm::uvec2 size) {
 
 Columns add_columns(FrameGraph& graph, Gpu& gpu, const Pixels& pixels, const GatheredLight& rows) {
     return graph.add("vpl-reconstruct", [&](Pass& pass) {
-        pass.tag(Workload::pixels);
+        pass.note(Workload::pixels);
         read_pixels(pass, pixels);
         read_gathered(pass, rows);
         const gl::Program& program =
@@ -74,7 +74,7 @@ Columns add_columns(FrameGraph& graph, Gpu& gpu, const Pixels& pixels, const Gat
 
 BufferHandle<std::uint32_t> add_list(FrameGraph& graph, Gpu& gpu, const Columns& columns, glm::uvec2 size) {
     return graph.add("vpl-fill-list", [&](Pass& pass) {
-        pass.tag(Workload::pixels);
+        pass.note(Workload::pixels);
         pass.read(columns.fill_mask, {Usage::storage, BINDING_FILL_MASK});
         const gl::Program& program = gpu.program({"indirect/vpl_fill_list.comp"});
         const auto list =
@@ -104,7 +104,7 @@ void fill(const Gpu& gpu, const gl::Program& program, std::uint32_t vpl_count, s
 GatheredLight add_fill(FrameGraph& graph, Gpu& gpu, const Pixels& pixels, const IndirectLight& found,
                        BufferHandle<std::uint32_t> order, const VplLight& light, std::uint32_t one_in) {
     return graph.add("vpl-fill", [&](Pass& pass) {
-        pass.tag(Workload::pixels);
+        pass.note(Workload::pixels);
         pass.parameter(one_in);
         read_pixels(pass, pixels);
         pass.read(order, {Usage::storage, BINDING_VPL_ORDER});

@@ -112,7 +112,7 @@ struct Candidates {
 LightLists add_culling(FrameGraph& graph, Gpu& gpu, std::string_view name, LightList kind,
                        const ListInputs& inputs, const Candidates& candidates) {
     return graph.add(name, [&](Pass& pass) {
-        pass.tag(Workload::pixels);
+        pass.note(Workload::pixels);
         const auto& [bins, depths] = candidates;
         pass.read(bins.bins);
         read_view(pass, inputs.view);
@@ -143,7 +143,7 @@ LightLists add_culling(FrameGraph& graph, Gpu& gpu, std::string_view name, Light
 BufferHandle<gpu::TileDepth> add_tile_depths(FrameGraph& graph, Gpu& gpu, TextureHandle depth,
                                              const ViewData& view, const LightGrid& grid) {
     return graph.add("tile-depths", [&](Pass& pass) {
-        pass.tag(Workload::pixels);
+        pass.note(Workload::pixels);
         pass.read(depth, {Usage::sampled, UNIT_DEPTH});
         pass.read(grid.cells);
         read_view(pass, view);

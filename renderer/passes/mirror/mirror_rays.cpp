@@ -56,7 +56,7 @@ MirroredSurfaces add_mirror_rays(FrameGraph& graph, Gpu& gpu, const Surfaces& su
                                  const Tracing& tracing, const MirroredSources& sources, const ViewData& view,
                                  std::optional<ValueHandle<std::uint32_t>> round) {
     return graph.add("mirror-rays", [&](Pass& pass) {
-        pass.tag(Workload::pixels);
+        pass.note(Workload::pixels);
         read_geometry_and_material(pass, surfaces);
         read_tracing(pass, tracing);
         read_view(pass, view);
@@ -100,7 +100,7 @@ TextureHandle add_mirror_resolve(FrameGraph& graph, Gpu& gpu, const Surfaces& su
                                  std::optional<TextureHandle> reflected, const ViewData& view,
                                  TextureHandle radiance) {
     return graph.add("mirror-resolve", [&](Pass& pass) {
-        pass.tag(Workload::pixels);
+        pass.note(Workload::pixels);
         read_geometry_and_material(pass, surfaces);
         read_view(pass, view);
         pass.read(*mirrored.surfaces.depth, {Usage::sampled, UNIT_MIRRORED_PLACE});

@@ -11,7 +11,7 @@ TextureHandle add_accumulate(FrameGraph& graph, Gpu& gpu, TextureHandle radiance
     const TextureHandle blank = graph.texture("mean radiance", {size, Format::rgba32f}, Lifetime::persistent);
     const TextureHandle past = graph.history(blank);
     return graph.add("accumulate", [&](Pass& pass) {
-        pass.tag(Workload::pixels);
+        pass.note(Workload::pixels);
         pass.read(radiance, {Usage::sampled, UNIT_RADIANCE});
         pass.read(past, {Usage::sampled, UNIT_MEAN});
         pass.read(averaged);

@@ -8,7 +8,7 @@ namespace candela {
 
 BufferHandle<glm::vec2> add_exposure(FrameGraph& graph, Gpu& gpu, TextureHandle radiance) {
     return graph.add("exposure", [&](Pass& pass) {
-        pass.tag(Workload::pixels);
+        pass.note(Workload::pixels);
         pass.read(radiance, {Usage::sampled, UNIT_RADIANCE});
         const gl::Program& program = gpu.program({exposure_stage});
         // Kept while the radiance does not change.

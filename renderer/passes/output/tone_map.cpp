@@ -99,7 +99,7 @@ TextureHandle add_tone_map(FrameGraph& graph, Gpu& gpu, TextureHandle radiance, 
                            const Display& display) {
     const Exposure exposure = add_exposure_of(graph, gpu, radiance, display);
     return graph.add("tone-map", [&](Pass& pass) {
-        pass.tag(Workload::pixels);
+        pass.note(Workload::pixels);
         const gl::Program& program = read_inputs(pass, gpu, radiance, exposure, display);
         const Format format = display.encoded ? Format::rgba8 : Format::rgba32f;
         const TextureHandle picture =

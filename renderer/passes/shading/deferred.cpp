@@ -15,7 +15,7 @@ constexpr std::uint32_t surfaces_an_invocation = 4;  // at most: shaders/shading
 TextureHandle add_deferred(FrameGraph& graph, Gpu& gpu, const Surfaces& surfaces, const Lighting& lighting,
                            const ViewData& view) {
     return graph.add("deferred", [&](Pass& pass) {
-        pass.tag(Workload::pixels);
+        pass.note(Workload::pixels);
         read_geometry_and_material(pass, surfaces);
         read_lighting(pass, lighting);
         read_view(pass, view);

@@ -9,7 +9,7 @@ namespace candela {
 TextureHandle add_emission(FrameGraph& graph, Gpu& gpu, const SceneData& scene, const ViewData& view,
                            const Surfaces& surfaces, TextureHandle radiance) {
     return graph.add("emission", [&](Pass& pass) {
-        pass.tag(Workload::pixels);
+        pass.note(Workload::pixels);
         read_meshes(pass, scene);
         read_view(pass, view);
         test_depth(pass, surfaces);

@@ -9,7 +9,7 @@ namespace candela {
 ForwardResults add_forward(FrameGraph& graph, Gpu& gpu, const SceneData& scene, const Lighting& lighting,
                            const ViewData& view, const Surfaces& surfaces) {
     return graph.add("forward", [&](Pass& pass) {
-        pass.tag(Workload::pixels);
+        pass.note(Workload::pixels);
         read_meshes(pass, scene);
         read_lighting(pass, lighting);
         read_view(pass, view);

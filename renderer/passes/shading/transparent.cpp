@@ -58,7 +58,7 @@ struct BlendedSurfaces {
 
 BlendedSurfaces read_blended(Pass& pass, Gpu& gpu, const SceneData& scene, const Lighting& lighting,
                              const ViewData& view, const Surfaces& surfaces, const TransparentParts& parts) {
-    pass.tag(Workload::pixels);
+    pass.note(Workload::pixels);
     read_meshes(pass, scene);
     read_lighting(pass, lighting);
     pass.read(scene.placement);

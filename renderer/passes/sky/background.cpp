@@ -59,7 +59,7 @@ gl::Uniforms sky_uniforms(const Environment& environment) {
 TextureHandle add_background(FrameGraph& graph, Gpu& gpu, const Sky& sky, TextureHandle picture,
                              const ViewData& view, const Surfaces& surfaces, TextureHandle radiance) {
     return graph.add("background", [&](Pass& pass) {
-        pass.tag(Workload::pixels);
+        pass.note(Workload::pixels);
         pass.read(sky.environment);
         pass.read(picture, {Usage::sampled, UNIT_SKY});
         read_view(pass, view);

@@ -7,7 +7,7 @@ namespace candela {
 
 Surfaces add_depth_prepass(FrameGraph& graph, Gpu& gpu, const SceneData& scene, const ViewData& view) {
     return graph.add("depth-prepass", [&](Pass& pass) {
-        pass.tag(view.workload);
+        pass.note(view.workload);
         read_meshes(pass, scene);
         read_view(pass, view);
         const SurfacePrograms programs =

@@ -9,7 +9,7 @@ namespace candela {
 Surfaces add_gbuffer(FrameGraph& graph, Gpu& gpu, const SceneData& scene, const ViewData& view,
                      MaterialParts parts) {
     return graph.add("gbuffer", [&](Pass& pass) {
-        pass.tag(Workload::pixels);
+        pass.note(Workload::pixels);
         read_meshes(pass, scene);
         read_view(pass, view);
         const SurfacePrograms programs =

@@ -25,7 +25,7 @@ HostSurfaceInputs import_host_surfaces(FrameGraph& graph, bool material) {
 Surfaces add_host_surfaces(FrameGraph& graph, Gpu& gpu, const HostSurfaceInputs& inputs, const ViewData& view,
                            bool glossy, std::optional<ValueHandle<CheckedSurfaces>> checked) {
     return graph.add("host-surfaces", [&](Pass& pass) {
-        pass.tag(view.workload);
+        pass.note(view.workload);
         pass.read(inputs.albedo, {Usage::sampled, UNIT_ALBEDO});
         pass.read(inputs.normal, {Usage::sampled, UNIT_NORMAL});
         pass.read(inputs.depth, {Usage::sampled, UNIT_DEPTH});

@@ -180,6 +180,9 @@ class CANDELA_API GraphRuntime {
  public:
     /// Keeps a reference: the back end must outlive the runtime.
     explicit GraphRuntime(Backend& backend);
+    /// For graphs whose passes only change the world and set values. `switch_to` throws GraphError for one
+    /// that has textures or buffers of its own.
+    GraphRuntime();
     GraphRuntime(const GraphRuntime&) = delete;
     GraphRuntime& operator=(const GraphRuntime&) = delete;
     /// Destroys every object that the runtime has created, not the imported ones.
@@ -188,7 +191,7 @@ class CANDELA_API GraphRuntime {
     /// Switches to another graph and takes ownership of it. Handles of the old graph become invalid.
     ///
     /// Persistent resources and values that both graphs declare with the same kind, key and description keep
-    /// their content (FrameGraph::append_to_keys: keys are names unless something else is asked for). A pass
+    /// their content (ScopeDesc::key_ending: keys are names unless something else is asked for). A pass
     /// that both graphs declare with the same key, accesses and parameters stays up to date: it runs again
     /// only to provide results that were not kept, such as transients that were overwritten. Imported
     /// textures and buffers must be bound again; imported values stay set.

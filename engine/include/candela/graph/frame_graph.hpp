@@ -7,6 +7,7 @@
 #include <memory_resource>
 #include <new>
 #include <optional>
+#include <string>
 #include <string_view>
 #include <type_traits>
 #include <typeindex>
@@ -146,7 +147,7 @@ class CANDELA_API Pass {
     void write_entities();
 
     /// The pass runs after another one, which has been declared before it and which it otherwise does not
-    /// depend on. `pass`: its name, with what FrameGraph::append_to_names has added.
+    /// depend on. `pass`: its name, with the endings of scopes.
     void after(std::string_view pass);
 
     /// The pass writes the resource. Returns the handle of the version that it produces. Histories and
@@ -193,11 +194,9 @@ class CANDELA_API Pass {
     /// again.
     void keeps_state();
 
-    /// A value of the host's about the pass, such as what its time depends on, for PassRecord::tag. The graph
-    /// does not use it.
-    template <class Tag>
-    requires std::is_enum_v<Tag>
-    void tag(Tag value) { set_tag(static_cast<std::uint32_t>(value)); }
+    /// Says what the graph does not use, such as what the pass's time depends on, for PassRecord::note: any
+    /// value that the host chooses. Replaces an earlier note.
+    void note(std::any what);
 
     /// Sets the function that the pass executes: `void(Execution&)`. The graph owns it. A second call
     /// replaces the function; a pass without one only has its barriers issued and its attachments bound.
@@ -221,7 +220,6 @@ class CANDELA_API Pass {
     [[nodiscard]] ResourceHandle declare_write(ResourceHandle resource, ResourceKind kind, Binding binding);
     [[nodiscard]] ResourceHandle declare_update(ResourceHandle resource, ResourceKind kind, Binding binding);
     void declare_parameter(std::type_index type, const void* value, bool (*equal)(const void*, const void*));
-    void set_tag(std::uint32_t tag);
     void set_function(void* function, void (*invoke)(void*, Execution&));
 
     detail::Declaration& declared_;
@@ -244,6 +242,40 @@ struct FoundBuffer {
     const std::any* note = nullptr;          ///< as in FoundTexture
 };
 
+/// What a scope does to what is declared in it.
+struct ScopeDesc {
+    /// Is put behind the names of passes and resources, and before the ending of the scope around this one.
+    /// So a graph can contain the same passes several times, for example once for each view.
+    std::string_view name_ending{};
+    /// GraphRuntime::switch_to finds what both graphs have by keys. A key is a name as it was given, with
+    /// this ending. None: with that of the scope around, or if there is none, keys are the names. With it,
+    /// what was made under one name in a graph can go on under another one in the next, for example where two
+    /// of a kind take turns. Keys of passes, and those of persistent and imported resources within each kind,
+    /// must be unique.
+    std::optional<std::string_view> key_ending{};
+    /// An imported value. In frames in which it is true, the passes do not run: what they have written stays
+    /// as it is, although their inputs change, and they run when it is false again. Only once all of them
+    /// have run, so that what they need of each other is there. None: as the scope around says.
+    std::optional<ValueHandle<bool>> held{};
+};
+
+/// See FrameGraph::scope.
+class CANDELA_API Scope {
+ public:
+    Scope(const Scope&) = delete;
+    Scope& operator=(const Scope&) = delete;
+    ~Scope();
+
+ private:
+    friend FrameGraph;
+    Scope(detail::Declaration& declared, const ScopeDesc& desc);
+
+    detail::Declaration& declared_;
+    std::string ending_;  // what is to come back
+    std::optional<std::string> key_ending_;
+    std::uint32_t held_by_;
+};
+
 /// The declaration of a frame: its resources and its passes. Misuse does not throw while declaring; `compile`
 /// reports every error. `compile` consumes the graph: afterwards it may only be assigned to or destroyed.
 class CANDELA_API FrameGraph {
@@ -254,24 +286,12 @@ class CANDELA_API FrameGraph {
     ~FrameGraph();
 
     // Names appear in messages and reports. They also identify persistent and imported resources across
-    // graphs (GraphRuntime::switch_to; see append_to_keys), so the names of persistent and imported resources
-    // must be unique within each kind (texture, buffer, value). The graph copies the names.
+    // graphs (GraphRuntime::switch_to; see ScopeDesc::key_ending), so the names of persistent and imported
+    // resources must be unique within each kind (texture, buffer, value). The graph copies the names.
 
-    /// Appends `ending` to the names of all passes and resources that are declared from now on, so that a
-    /// graph can contain the same passes several times, for example once for each view.
-    void append_to_names(std::string_view ending);
-
-    /// GraphRuntime::switch_to finds what both graphs have by keys. A key is a name as it was given, with
-    /// `ending` instead of that of append_to_names; none: as the names. With it, what was made under one name
-    /// in a graph can go on under another one in the next, for example where two of a kind take turns. Keys
-    /// of passes, and those of persistent and imported resources within each kind, must be unique.
-    void append_to_keys(std::optional<std::string_view> ending);
-
-    /// Passes that are declared from now on do not run in frames in which `held`, an imported value, is true:
-    /// what they have written stays as it is, although their inputs change, and they run when it is false
-    /// again. Only once all of them have run, so that what they need of each other is there. None: no pass is
-    /// held any more.
-    void hold_passes(std::optional<ValueHandle<bool>> held);
+    /// As long as the returned object lives, which must be gone before the graph is compiled, passes and
+    /// resources are declared as `desc` says. Scopes may be inside of others.
+    [[nodiscard]] Scope scope(const ScopeDesc& desc);
 
     /// A texture with the given description. For an imported one, `compile` checks the usages against `desc`,
     /// and GraphRuntime::bind gives the actual description.
@@ -307,7 +327,7 @@ class CANDELA_API FrameGraph {
     /// The newest version of the texture with this name, for a pass declared next to read. Only what passes
     /// have written so far is found, not what they are yet to write, nor histories and what only the host
     /// writes; of several transients with the name, that declared last. `name` is as in messages and in
-    /// descriptions, with what append_to_names has added. O(resources).
+    /// descriptions, with the endings of scopes. O(resources).
     [[nodiscard]] std::optional<FoundTexture> find_texture(std::string_view name) const;
     /// The same for a buffer.
     [[nodiscard]] std::optional<FoundBuffer> find_buffer(std::string_view name) const;

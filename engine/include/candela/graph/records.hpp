@@ -1,5 +1,6 @@
 #pragma once
 
+#include <any>
 #include <cstdint>
 #include <string_view>
 #include <vector>
@@ -10,7 +11,7 @@ struct PassRecord {
     std::string_view name;  ///< valid until the next call of GraphRuntime::switch_to
     bool ran = false;
     bool verified = false;  ///< GraphRuntime::verify ran it again, with the same result
-    std::uint32_t tag = 0;  ///< see Pass::tag; 0 without
+    const std::any* note = nullptr;  ///< see Pass::note; null without; valid as the name is
     double cpu_ms = 0.0;    ///< elapsed milliseconds on the CPU side; 0 without timing
 };
 

@@ -6,14 +6,16 @@
 #include <vector>
 
 #include <candela/api.hpp>
-#include <candela/ecs/world.hpp>
+#include <candela/ecs/world_writer.hpp>
+#include <candela/graph/frame_graph.hpp>
 #include <candela/scene/animation.hpp>
 #include <candela/scene/deformed_mesh.hpp>
 
 namespace candela {
 
-// In each frame of a host: advance_animations, then MeshDeformer::update, then the renderer. Values that stay
-// the same are not set again, so that the rest of the frame sees only what has really changed.
+// In each frame of a host: the systems of add_animation, or advance_animations and MeshDeformer::update; then
+// the renderer. Values that stay the same are not set again, so that the rest of the frame sees only what has
+// really changed.
 
 /// What does not work in a world, one line each that names the entity, for example "entity "walk": its clip 3
 /// does not exist". Empty: nothing is wrong.
@@ -22,11 +24,11 @@ using AnimationFaults = std::vector<std::string>;
 /// Moves the time of all players that are `playing` by `seconds` times their speed and applies their clips at
 /// that time to their targets. A player that does not loop ends at the last key, or, backwards, at 0. Paused
 /// players, and what they have moved, are left as they are. What is faulty is left out.
-CANDELA_API AnimationFaults advance_animations(World& world, double seconds);
+CANDELA_API AnimationFaults advance_animations(const WorldWriter& world, double seconds);
 
 /// Applies the player's clip at its present time, also if it is paused: to show a time that was set. Throws
 /// EntityError if the entity has no AnimationPlayer.
-CANDELA_API AnimationFaults apply_animation(World& world, Entity player);
+CANDELA_API AnimationFaults apply_animation(const WorldWriter& world, Entity player);
 
 /// Sets the DeformedMesh of entities that have a mesh and a Skin or MorphWeights, and removes it when they
 /// have neither any more. It keeps what it needs to do so only when joints, weights or the mesh have changed,
@@ -54,13 +56,24 @@ class CANDELA_API MeshDeformer {
     MeshDeformer& operator=(MeshDeformer&&) noexcept;
     ~MeshDeformer();
 
-    AnimationFaults update(World& world);
+    AnimationFaults update(const WorldWriter& world);
     /// The same for these entities only; what is known of others is kept.
-    AnimationFaults update(World& world, std::span<const Entity> entities);
+    AnimationFaults update(const WorldWriter& world, std::span<const Entity> entities);
 
  private:
     struct State;
     std::unique_ptr<State> state_;
 };
+
+/// Systems that play a world's animations and deform its meshes.
+struct AnimationSystems {
+    ValueHandle<double> seconds;                    ///< imported: the time of the host's clock
+    ValueHandle<AnimationFaults> animation_faults;  ///< of the players
+    ValueHandle<AnimationFaults> mesh_faults;       ///< of the deformed meshes
+};
+
+/// Adds the systems `animation` and `deformation` to a graph. They call advance_animations, with the time
+/// that has passed since its last run, and MeshDeformer::update. A graph with them is meant for one world.
+[[nodiscard]] CANDELA_API AnimationSystems add_animation(FrameGraph& graph);
 
 }  // namespace candela
