@@ -43,28 +43,49 @@ void add_player(gltf::ReadAnimations animations, World& world, ImportReport& rep
               AnimationPlayer{.animations = std::make_shared<const Animations>(std::move(shared))});
 }
 
-ImportReport create_entities(std::vector<gltf::StagedEntity> staged,
-                             const std::vector<std::shared_ptr<const Mesh>>& meshes,
-                             const gltf::Figures& figures, World& world) {
-    ImportReport report;
+/// A node, with all that it becomes.
+struct StagedNode {
+    gltf::StagedEntity source;
+    std::shared_ptr<const Mesh> mesh;  // null without one
+    gltf::Figure figure{};             // of the mesh
+};
+
+std::vector<StagedNode> stage_nodes(std::vector<gltf::StagedEntity> staged,
+                                    const std::vector<std::shared_ptr<const Mesh>>& meshes,
+                                    const gltf::Figures& figures) {
+    std::vector<StagedNode> nodes;
     for (gltf::StagedEntity& source : staged) {
-        const Entity entity = world.create();
+        const auto mesh = source.mesh < 0 ? nullptr : meshes[static_cast<std::size_t>(source.mesh)];
+        gltf::Figure figure = mesh ? figures.read(source, *mesh) : gltf::Figure{};
+        nodes.push_back({std::move(source), mesh, std::move(figure)});
+    }
+    return nodes;
+}
+
+void create_nodes(std::vector<StagedNode> nodes, const gltf::Figures& figures, World& world,
+                  ImportReport& report) {
+    for (StagedNode& node : nodes) {
+        gltf::StagedEntity& source = node.source;
+        const Entity entity = report.entities.emplace_back(world.create());
         if (source.parent) source.transform.parent = report.entities[*source.parent];
         world.set(entity, Name{std::move(source.name)});
         world.set(entity, source.transform);
-        if (const auto mesh = source.mesh < 0 ? nullptr : meshes[static_cast<std::size_t>(source.mesh)]) {
-            report.triangles += count_triangles(*mesh);
-            world.set(entity, MeshInstance{mesh});
+        if (node.mesh) {
+            report.triangles += count_triangles(*node.mesh);
+            world.set(entity, MeshInstance{node.mesh});
         }
         if (source.camera) world.set(entity, *source.camera);
         if (source.light) std::visit([&](const auto& light) { world.set(entity, light); }, *source.light);
-        report.entities.push_back(entity);
     }
-    for (std::size_t i = 0; i < staged.size(); ++i) {
-        const auto* const instance = world.find<MeshInstance>(report.entities[i]);
-        if (instance) figures.add_to(staged[i], report.entities[i], *instance->mesh, report.entities, world);
+    for (std::size_t i = 0; i < nodes.size(); ++i) {
+        figures.add(std::move(nodes[i].figure), report.entities[i], report.entities, world);
     }
-    return report;
+}
+
+void add_environment(const gltf::NamedEnvironment& environment, World& world, ImportReport& report) {
+    report.entities.push_back(world.create());
+    world.set(report.entities.back(), Name{environment.name});
+    world.set(report.entities.back(), environment.environment);
 }
 
 ImportReport import_document(gltf::Bytes bytes, const std::filesystem::path& base_directory, World& into,
@@ -82,17 +103,19 @@ ImportReport import_document(gltf::Bytes bytes, const std::filesystem::path& bas
     gltf::ReadAnimations animations = gltf::read_animations(document, staged, budget);
     const auto environment = gltf::read_environment(document, files, budget);
     progress("creating entities", 0, 1);
-    World grown = into;  // a copy, so that running out of memory halfway leaves the world as it was
-    ImportReport report = create_entities(std::move(staged), meshes, figures, grown);
-    add_player(std::move(animations), grown, report);
-    if (environment) {
-        report.entities.push_back(grown.create());
-        grown.set(report.entities.back(), Name{environment->name});
-        grown.set(report.entities.back(), environment->environment);
-    }
+    std::vector<StagedNode> nodes = stage_nodes(std::move(staged), meshes, figures);
+    ImportReport report;
+    report.entities.reserve(nodes.size() + 2);  // so that each entity that is created stands in the report
     report.warnings = std::move(document.warnings);
-    gltf::deform_once(grown, report);
-    into = std::move(grown);
+    try {
+        create_nodes(std::move(nodes), figures, into, report);
+        add_player(std::move(animations), into, report);
+        if (environment) add_environment(*environment, into, report);
+        gltf::deform_once(into, report);
+    } catch (...) {  // only memory can be lacking now
+        for (const Entity entity : report.entities) into.destroy(entity);
+        throw;
+    }
     return report;
 }
 

@@ -69,23 +69,27 @@ Figures::Figures(Document& document, const std::vector<StagedEntity>& staged, co
     }
 }
 
-void Figures::add_to(const StagedEntity& source, Entity entity, const Mesh& mesh,
-                     const std::vector<Entity>& created, World& world) const {
+Figure Figures::read(const StagedEntity& source, const Mesh& mesh) const {
     const std::size_t targets = mesh.morph_weights.size();
     budget_.add_memory(2 * targets * sizeof(float));
-    std::vector<float> weights = naming(fmt::format("node {}", source.node), [&] {
-        return read_morph_weights(document_.at("nodes", source.node), targets, mesh.morph_weights);
-    });
-    const std::optional<ReadSkin> none;
-    const std::optional<ReadSkin>& skin =
-        source.skin < 0 ? none : skins_[static_cast<std::size_t>(source.skin)];
-    if (skin || targets > 0) budget_.add_memory(memory_to_deform(mesh));
-    if (targets > 0) world.set(entity, MorphWeights{std::move(weights)});
-    if (!skin) return;
+    Figure figure{.weights = naming(fmt::format("node {}", source.node), [&] {
+                      return read_morph_weights(document_.at("nodes", source.node), targets,
+                                                mesh.morph_weights);
+                  })};
+    const bool has_skin = source.skin >= 0 && skins_[static_cast<std::size_t>(source.skin)];
+    if (has_skin || targets > 0) budget_.add_memory(memory_to_deform(mesh));
+    if (!has_skin) return figure;
+    figure.skin = &*skins_[static_cast<std::size_t>(source.skin)];
     // Of the joints, and of their matrices when the mesh is deformed.
-    budget_.add_memory(skin->joints.size() * (sizeof(Entity) + 2 * sizeof(glm::mat4)));
-    Skin component{{}, skin->inverse_bind_matrices};
-    for (const int joint : skin->joints) {
+    budget_.add_memory(figure.skin->joints.size() * (sizeof(Entity) + 2 * sizeof(glm::mat4)));
+    return figure;
+}
+
+void Figures::add(Figure figure, Entity entity, const std::vector<Entity>& created, World& world) const {
+    if (!figure.weights.empty()) world.set(entity, MorphWeights{std::move(figure.weights)});
+    if (figure.skin == nullptr) return;
+    Skin component{{}, figure.skin->inverse_bind_matrices};
+    for (const int joint : figure.skin->joints) {
         component.joints.push_back(created[*places_[static_cast<std::size_t>(joint)]]);
     }
     world.set(entity, std::move(component));

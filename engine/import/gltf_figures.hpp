@@ -20,6 +20,12 @@ struct Skinned {
 /// Takes the skin from entities without a mesh, with a warning.
 [[nodiscard]] Skinned find_skinned(Document& document, std::vector<StagedEntity>& staged);
 
+/// What is read of an entity that changes its shape.
+struct Figure {
+    std::vector<float> weights{};    ///< of the mesh's morph targets
+    const ReadSkin* skin = nullptr;  ///< null without one; owned by the Figures
+};
+
 /// Gives entities their skins and the weights of their morph targets.
 class Figures {
  public:
@@ -28,10 +34,10 @@ class Figures {
     Figures(Document& document, const std::vector<StagedEntity>& staged, const Skinned& skinned,
             ImportBudget& budget);
 
-    /// Sets the components of an entity with a mesh. `created` are the entities that all staged ones have
-    /// become. Also counts the memory that deform_once needs. Throws SceneError.
-    void add_to(const StagedEntity& source, Entity entity, const Mesh& mesh,
-                const std::vector<Entity>& created, World& world) const;
+    /// Of a staged entity with this mesh. Also counts the memory that deform_once needs. Throws SceneError.
+    [[nodiscard]] Figure read(const StagedEntity& source, const Mesh& mesh) const;
+    /// Sets the components of an entity. `created` are the entities that all staged ones have become.
+    void add(Figure figure, Entity entity, const std::vector<Entity>& created, World& world) const;
 
  private:
     const Document& document_;

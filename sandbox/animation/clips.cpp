@@ -96,6 +96,8 @@ ClipPlayback::ClipPlayback() : systems_(std::make_unique<GraphRuntime>()) {
     handles_ = add_animation(graph);
     systems_->switch_to(compile(std::move(graph)).take());
     systems_->set(handles_.seconds, seconds_);
+    World empty;
+    systems_->run(empty);  // starts the clock, and says that nothing is faulty yet
 }
 
 void ClipPlayback::step(World& world) {

@@ -112,7 +112,8 @@ struct ImportOptions {
 /// file is outside of `options.root` or it exceeds a limit.
 ///
 /// Throws SceneError, whose message is one line that names the file, the object and the problem, or
-/// ImportCancelled. The world is then unchanged. Messages contain nothing of other files than this one.
+/// ImportCancelled. The world then has the entities and components that it had. Messages contain nothing of
+/// other files than this one.
 CANDELA_API ImportReport import_gltf(const std::filesystem::path& path, World& into,
                                      const ImportOptions& options = {});
 
