@@ -294,8 +294,7 @@ void declare_files(CommandLine& line, Options& options) {
         "picture: PNG tone-mapped, EXR and PFM linear radiance; %d numbers frames, %05d with five digits; "
         "default headless: candela.png, unless a report or a graph is asked for");
     add_output(line, "--report", options.report, {".json"}, "times, counts and the energy account");
-    add_output(line, "--describe-graph", options.describe_graph, {".txt"},
-               "the compiled frame graph");
+    add_output(line, "--describe-graph", options.describe_graph, {".txt"}, "the compiled frame graph");
     add_output(
         line, "--ui-log", options.ui_log, {".jsonl"},
         "what the window shows, and where its controls are, a JSON object a line: for automatic tests");

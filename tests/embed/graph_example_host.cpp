@@ -1,8 +1,10 @@
 // The program in graph.md, word for word: CMakeLists.txt extracts it. It looks at what was drawn before it is
 // shown, and closes the window after a few frames.
 
-#include <epoxy/gl.h>
+// clang-format off
+#include <epoxy/gl.h>  // before GLFW, which would include another header of GL
 #include <GLFW/glfw3.h>
+// clang-format on
 
 #include <cstdio>
 #include <cstdlib>

@@ -139,11 +139,13 @@ TEST_CASE_FIXTURE(ExtensionTests, "a pass of the host's is driven by its own com
 TEST_CASE_FIXTURE(ExtensionTests, "extensions follow each other, in all views and configurations") {
     const Picture usual = frame();
     REQUIRE(
-        renderer.extend(scaling("double", ExtensionPlace::after_shading, [](const WorldReader&) { return 2.0F; }))
+        renderer
+            .extend(scaling("double", ExtensionPlace::after_shading, [](const WorldReader&) { return 2.0F; }))
             .empty());
-    REQUIRE(
-        renderer.extend(scaling("triple", ExtensionPlace::before_tone_map, [](const WorldReader&) { return 3.0F; }))
-            .empty());
+    REQUIRE(renderer
+                .extend(scaling("triple", ExtensionPlace::before_tone_map,
+                                [](const WorldReader&) { return 3.0F; }))
+                .empty());
     CHECK(frame() == 6.0F * usual);
     for (const ShadingPath path : {ShadingPath::forward, ShadingPath::clustered_deferred}) {
         Configuration configuration = renderer.configuration();
@@ -159,9 +161,10 @@ TEST_CASE_FIXTURE(ExtensionTests, "extensions follow each other, in all views an
     CHECK(first.read() == second.read());
     CHECK(describe_text(renderer.description()).find("triple 2") != std::string::npos);
     // The same name replaces.
-    REQUIRE(
-        renderer.extend(scaling("triple", ExtensionPlace::before_tone_map, [](const WorldReader&) { return 0.5F; }))
-            .empty());
+    REQUIRE(renderer
+                .extend(scaling("triple", ExtensionPlace::before_tone_map,
+                                [](const WorldReader&) { return 0.5F; }))
+                .empty());
     CHECK(relative_mean_square(frame(), usual) < 1e-10);
 }
 
@@ -473,7 +476,8 @@ TEST_CASE_FIXTURE(ExtensionTests,
 TEST_CASE_FIXTURE(ExtensionTests, "verification finds an input that a pass of the host's does not declare") {
     float hidden = 1.0F;
     REQUIRE(
-        renderer.extend(scaling("sly", ExtensionPlace::after_shading, [&](const WorldReader&) { return hidden; }))
+        renderer
+            .extend(scaling("sly", ExtensionPlace::after_shading, [&](const WorldReader&) { return hidden; }))
             .empty());
     renderer.verify(true);
     static_cast<void>(frame());

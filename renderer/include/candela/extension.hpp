@@ -72,8 +72,8 @@ struct ViewFrame {
 };
 
 /// Passes of a host in the frames of a renderer. They are declared like Candela's own: they run only when
-/// what they read has changed, appear in Renderer::describe and in the times, and are verified. Objects are
-/// GL names (Execution::object). Before a pass runs, its attachments and bindings are bound, the viewport
+/// what they read has changed, appear in Renderer::description and in the times, and are verified. Objects
+/// are GL names (Execution::object). Before a pass runs, its attachments and bindings are bound, the viewport
 /// covers the attachments, and depth test, culling and blending are off. A pass may leave any state behind,
 /// such as the scissor test, blending, masks and bindings: the passes that follow set what they need. It must
 /// end what it begins, such as queries, conditional rendering and transform feedback, and leave the

@@ -46,7 +46,7 @@ struct ValueRange {
 struct Inspection {
     static constexpr std::uint32_t all_slices = 0xffff'ffffU;
 
-    std::string resource;   ///< its name as in Renderer::describe, with the ending of the view
+    std::string resource;   ///< its name as in Renderer::description, with the ending of the view
     std::uint32_t mip = 0;  ///< the last one if there are fewer
     /// Of an array; of a cube array the face, 6 a cube; the last one if there are fewer. Of light lists of
     /// clusters the slice, 0 at the eye, or all_slices: the longest list of a tile.

@@ -10,9 +10,9 @@ namespace candela {
 struct PassRecord {
     std::string_view name;  ///< valid until the next call of GraphRuntime::switch_to
     bool ran = false;
-    bool verified = false;  ///< GraphRuntime::verify ran it again, with the same result
+    bool verified = false;           ///< GraphRuntime::verify ran it again, with the same result
     const std::any* note = nullptr;  ///< see Pass::note; null without; valid as the name is
-    double cpu_ms = 0.0;    ///< elapsed milliseconds on the CPU side; 0 without timing
+    double cpu_ms = 0.0;             ///< elapsed milliseconds on the CPU side; 0 without timing
 };
 
 struct FrameRecord {
