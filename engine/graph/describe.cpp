@@ -190,9 +190,9 @@ std::string pass_text(const GraphDescription& graph, std::size_t position) {
     const auto line = [&](std::string_view verb, std::string_view what) {
         text += fmt::format("      {} {}\n", verb, what);
     };
-    const auto edges = std::ranges::equal_range(graph.edges, position, {}, &DescribedEdge::to);
-    for (const DescribedEdge& edge : edges) {
-        if (edge.kind != DependencyKind::history) line("after", edge_text(graph, edge));
+    for (const DescribedEdge& edge : graph.edges) {
+        const bool is_order = edge.to == position && edge.kind != DependencyKind::history;
+        if (is_order) line("after", edge_text(graph, edge));
     }
     if (pass.barrier != Barrier::none) line("barrier", to_string(pass.barrier));
     for (const DescribedComponent& component : pass.components) {

@@ -5,7 +5,6 @@
 #include <iterator>
 #include <numeric>
 #include <random>
-#include <ranges>
 #include <utility>
 
 namespace candela::detail {
@@ -169,23 +168,22 @@ class Scheduler {
         for (const Dependency& dependency : dependencies) {
             followers_[next[dependency.from]++] = dependency.to;
         }
-        std::ranges::copy_if(kept | std::views::reverse, std::back_inserter(ready_),
-                             [this](std::uint32_t pass) { return waits_for_[pass] == 0; });
+        std::copy_if(kept.rbegin(), kept.rend(), std::back_inserter(ready_),
+                     [this](std::uint32_t pass) { return waits_for_[pass] == 0; });
     }
 
     [[nodiscard]] bool is_done() const { return ready_.empty(); }
 
     /// A pass near the first declared one.
     std::uint32_t take_next() {
-        const auto near = ready_ | std::views::reverse | std::views::take(look_ahead);
-        const auto found =
-            std::ranges::find_if(near, [this](std::uint32_t pass) { return !hazards_.needs_barrier(pass); });
-        return take(found == near.end() ? ready_.size() - 1
-                                        : ready_.size() - 1 - static_cast<std::size_t>(found - near.begin()));
+        const auto near_end = ready_.rbegin() + std::min(look_ahead, std::ssize(ready_));
+        const auto found = std::find_if(ready_.rbegin(), near_end,
+                                        [this](std::uint32_t pass) { return !hazards_.needs_barrier(pass); });
+        return take(std::next(found == near_end ? ready_.rbegin() : found).base());
     }
 
     std::uint32_t take_any(std::mt19937& random) {
-        return take(std::uniform_int_distribution<std::size_t>(0, ready_.size() - 1)(random));
+        return take(ready_.begin() + std::uniform_int_distribution(0L, std::ssize(ready_) - 1)(random));
     }
 
  private:
@@ -193,9 +191,9 @@ class Scheduler {
     /// more memory, as results wait longer for their readers.
     static constexpr std::ptrdiff_t look_ahead = 16;
 
-    std::uint32_t take(std::size_t index) {
-        const std::uint32_t pass = ready_[index];
-        ready_.erase(ready_.begin() + static_cast<std::ptrdiff_t>(index));
+    std::uint32_t take(std::vector<std::uint32_t>::iterator chosen) {
+        const std::uint32_t pass = *chosen;
+        ready_.erase(chosen);
         hazards_.run(pass);
         for (std::uint32_t at = first_[pass]; at < first_[pass + 1]; ++at) {
             if (--waits_for_[followers_[at]] == 0) make_ready(followers_[at]);
