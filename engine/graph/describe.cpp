@@ -177,12 +177,6 @@ std::string access_text(const GraphDescription& graph, const DescribedAccess& ac
     return text;
 }
 
-/// To follow "after".
-std::string edge_text(const GraphDescription& graph, const DescribedEdge& edge) {
-    return fmt::format("{} ({}{}{})", graph.passes[edge.from].name, to_string(edge.kind),
-                       edge.subjects.empty() ? "" : ": ", fmt::join(edge.subjects, ", "));
-}
-
 std::string pass_text(const GraphDescription& graph, std::size_t position) {
     const DescribedPass& pass = graph.passes[position];
     std::string text =
@@ -242,6 +236,11 @@ std::string_view to_string(DependencyKind kind) {
     static constexpr std::array<std::string_view, 7> names{
         "result", "overwrite", "component result", "component overwrite", "side effect", "after", "history"};
     return names.at(static_cast<std::size_t>(kind));
+}
+
+std::string edge_text(const GraphDescription& graph, const DescribedEdge& edge) {
+    return fmt::format("{} ({}{}{})", graph.passes[edge.from].name, to_string(edge.kind),
+                       edge.subjects.empty() ? "" : ": ", fmt::join(edge.subjects, ", "));
 }
 
 std::string storage_text(const DescribedResource& resource) {

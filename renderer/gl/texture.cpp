@@ -8,6 +8,8 @@
 #include <string>
 #include <utility>
 
+#include <glm/common.hpp>
+
 namespace candela::gl {
 namespace {
 

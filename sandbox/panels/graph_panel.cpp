@@ -59,8 +59,9 @@ void list_resource(const GraphDescription& graph, std::size_t index, std::string
                  fmt::format("{}, {}", storage_text(resource), to_string(resource.lifetime)).c_str());
 }
 
-/// The resources of the chosen pass: those that it reads, then those that it writes.
-void list_resources_of(GraphSelection& selection, const GraphDescription& graph) {
+/// The resources of the chosen pass, those that it reads, then those that it writes; and why it runs after
+/// others.
+void list_pass(GraphSelection& selection, const GraphDescription& graph) {
     if (!selection.pass) return;
     const auto pass = std::ranges::find(graph.passes, *selection.pass, &DescribedPass::name);
     if (pass == graph.passes.end()) return;
@@ -70,6 +71,11 @@ void list_resources_of(GraphSelection& selection, const GraphDescription& graph)
                 list_resource(graph, access.resource, write ? "writes" : "reads", selection.resource);
             }
         }
+    }
+    const auto position = static_cast<std::size_t>(pass - graph.passes.begin());
+    for (const DescribedEdge& edge : graph.edges) {
+        if (edge.to != position || edge.kind == DependencyKind::history) continue;
+        ImGui::TextDisabled("after %s", edge_text(graph, edge).c_str());
     }
 }
 
@@ -154,7 +160,7 @@ bool can_be_shown(const GraphDescription& graph, std::size_t resource) {
 void draw_graph_panel(GraphSelection& selection, const GraphDescription& graph, const PassCosts& costs) {
     const PassCost* plotted = selection.pass ? cost_of(costs, *selection.pass) : nullptr;
     draw_plot(plotted != nullptr ? *plotted : costs.frame());
-    list_resources_of(selection, graph);
+    list_pass(selection, graph);
     ImGui::TextDisabled("last and mean ms; round: CPU; blue: needs, orange: is needed by");
 
     const float space = 4.0F * ImGui::GetFontSize();

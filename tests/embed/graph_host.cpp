@@ -60,11 +60,14 @@ int main() {
     bool good = true;
     runtime.run(world);
     good &= check(runtime.value(doubled) == 42, "the result is not 42");
-    const std::vector<std::string> expected{"begin sum", "end", "barrier storage", "begin double", "end"};
+    // The first barrier keeps the sum from being overwritten before the frame before has read it.
+    const std::vector<std::string> expected{"barrier storage", "begin sum",    "end",
+                                            "barrier storage", "begin double", "end"};
     good &= check(memory.log == expected, "the passes are not in order");
     memory.log.clear();
     runtime.run(world);
-    good &= check(memory.log.front() == "begin double", "a clean pass ran");
+    const std::vector<std::string> again{"barrier storage", "begin double", "end"};
+    good &= check(memory.log == again, "a clean pass ran");
     good &= check(memory.misuse.empty(), "the back end was misused");
     world.set(entity, Number{0});
     runtime.run(world);

@@ -13,6 +13,8 @@
 #include <string>
 #include <vector>
 
+#include <glm/common.hpp>
+
 #include <candela/extension.hpp>
 #include <candela/graph/describe.hpp>
 #include <candela/graph/execute.hpp>

@@ -29,8 +29,8 @@ class Dependencies {
         for (const Access& access : declared_.accesses_of(pass)) {
             visit(pass, access);
         }
-        for (const bool write :
-             {false, true}) {  // a pass that does both reads what the one before has written
+        // Reads first: a pass that does both reads what the one before has written.
+        for (const bool write : {false, true}) {
             for (const ComponentAccess& access : declared_.components_of(pass)) {
                 if (access.write == write) visit(pass, *find_type(access.type), write);
             }
@@ -187,8 +187,8 @@ class Scheduler {
     }
 
  private:
-    /// Passes that may run are looked at up to this number. More would find few barriers less, and use
-    /// more memory, as results wait longer for their readers.
+    /// How many of the passes that may run are looked at. The renderer's frames get their fewest barriers by
+    /// this; the farther away passes are declared, the longer results wait for their readers in memory.
     static constexpr std::ptrdiff_t look_ahead = 16;
 
     std::uint32_t take(std::vector<std::uint32_t>::iterator chosen) {

@@ -176,7 +176,8 @@ class StateTransfer {
     }
 
     [[nodiscard]] bool same_pass(std::uint32_t pass, std::uint32_t old) const {
-        return std::ranges::equal(declared_.components_of(pass), old_declared_.components_of(old)) &&
+        return declared_.passes[pass].writes_entities == old_declared_.passes[old].writes_entities &&
+               std::ranges::equal(declared_.components_of(pass), old_declared_.components_of(old)) &&
                std::ranges::equal(declared_.parameters_of(pass), old_declared_.parameters_of(old)) &&
                std::ranges::equal(
                    declared_.accesses_of(pass), old_declared_.accesses_of(old),

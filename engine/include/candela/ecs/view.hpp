@@ -32,8 +32,8 @@ class View {
         using difference_type = std::ptrdiff_t;
 
         Iterator() = default;
-        Iterator(const Pools& pools, std::size_t smallest, std::span<const Entity> candidates)
-            : pools_(pools), smallest_(smallest), candidates_(candidates) {
+        Iterator(Pools pools, std::size_t smallest, std::span<const Entity> candidates)
+            : pools_(std::move(pools)), smallest_(smallest), candidates_(candidates) {
             skip_incomplete();
         }
 

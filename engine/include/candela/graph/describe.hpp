@@ -88,6 +88,9 @@ struct GraphDescription {
 /// For example "texture 64x32 rgba16f, array of 3 layers, 2 mips".
 [[nodiscard]] CANDELA_API std::string storage_text(const DescribedResource& resource);
 
+/// For example "draw (result: image)", to follow "after".
+[[nodiscard]] CANDELA_API std::string edge_text(const GraphDescription& graph, const DescribedEdge& edge);
+
 /// A listing for readers and golden tests.
 [[nodiscard]] CANDELA_API std::string describe_text(const GraphDescription& graph);
 }  // namespace candela

@@ -130,9 +130,9 @@ class CANDELA_API Pass {
         declare_component<C>(false);
     }
 
-    /// The pass is a system: it adds, changes or removes components of type C (Execution::world).
-    /// It is never culled. It runs again when anybody but itself has changed a C, so that what it writes
-    /// stays; it has to follow from what the pass reads, or running it twice would differ from once.
+    /// The pass is a system: it adds, changes or removes components of type C (Execution::world). It is never
+    /// culled. It runs again when anybody but itself has changed a C, so that what it writes stays; that has
+    /// to follow from what the pass reads, or running it twice would differ from running it once.
     ///
     /// Of passes that read or write the same type, those declared later see the changes of those declared
     /// earlier in the same frame. If the order of two passes that write the same type matters, the later one
@@ -142,8 +142,7 @@ class CANDELA_API Pass {
         declare_component<C>(true);
     }
 
-    /// The pass creates or destroys entities. That counts as a write of every
-    /// type of component.
+    /// The pass creates or destroys entities. That counts as a write of every type of component.
     void write_entities();
 
     /// The pass runs after another one, which has been declared before it and which it otherwise does not
