@@ -20,7 +20,7 @@ struct Skinned {
 /// Takes the skin from entities without a mesh, with a warning.
 [[nodiscard]] Skinned find_skinned(Document& document, std::vector<StagedEntity>& staged);
 
-/// What is read of an entity that changes its shape.
+/// The morph weights and the skin of an entity, as the file has them.
 struct Figure {
     std::vector<float> weights{};    ///< of the mesh's morph targets
     const ReadSkin* skin = nullptr;  ///< null without one; owned by the Figures

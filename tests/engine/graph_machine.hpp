@@ -62,8 +62,8 @@ struct Meaning {
     std::array<int, number_types> numbers{};  // at the end
 };
 
-/// What the passes that a graph has kept mean, evaluated in the order of their declaration, whatever the
-/// order in which they run. `before` holds the contents of the histories; null in the first frame.
+/// The contents that the kept passes of a graph give, evaluated in the order of their declaration, whatever
+/// the order in which they run. `before` holds the contents of the histories; null in the first frame.
 inline Meaning meaning(const Graph& graph, const CompiledGraph& compiled, const Host& host,
                        const Meaning* before = nullptr) {
     std::vector<std::uint32_t> order = compiled.plan().order;

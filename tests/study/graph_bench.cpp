@@ -78,7 +78,7 @@ Plans plans(Wiring reads) {
     return plans;
 }
 
-/// What is special about the passes: their functions own memory, or they write in a way that needs barriers.
+/// Kinds of passes: plain ones, some whose functions own memory, and some whose writes need barriers.
 enum class Passes : std::uint8_t { plain, owning, storing };
 
 /// Every pass writes a texture. Passes whose result is not read have a side effect, so that nothing is

@@ -11,7 +11,7 @@
 
 namespace candela {
 
-/// What a pass may do with the components of a world. The lists are indexed by component_index; types that a
+/// The access of a pass to the components of a world. The lists are indexed by component_index; types that a
 /// list is too short for do not count.
 struct DeclaredComponents {
     std::vector<bool> reads{};

@@ -60,7 +60,7 @@ enum class DependencyKind : std::uint8_t {
     component_overwrite,  ///< it writes components that the earlier one reads or writes
     side_effect,          ///< both have side effects, which keep the order of declaration
     after,                ///< Pass::after
-    history               ///< none: the `to` pass reads what the `from` pass wrote in the last frame
+    history               ///< no order: `to` reads the content that `from` has written in the last frame
 };
 [[nodiscard]] CANDELA_API std::string_view to_string(DependencyKind kind);
 

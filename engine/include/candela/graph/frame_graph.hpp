@@ -142,7 +142,8 @@ class CANDELA_API Pass {
         declare_component<C>(true);
     }
 
-    /// The pass creates or destroys entities. That counts as a write of every type of component.
+    /// The pass creates or destroys entities. For the order of passes, that counts as a write of every type
+    /// of component.
     void write_entities();
 
     /// The pass runs after another one, which has been declared before it and which it otherwise does not
@@ -193,8 +194,8 @@ class CANDELA_API Pass {
     /// again.
     void keeps_state();
 
-    /// Says what the graph does not use, such as what the pass's time depends on, for PassRecord::note: any
-    /// value that the host chooses. Replaces an earlier note.
+    /// A value of the host's about the pass, such as the workload that its time depends on. The graph does
+    /// not use it, and returns it in PassRecord::note. Replaces an earlier note.
     void note(std::any what);
 
     /// Sets the function that the pass executes: `void(Execution&)`. The graph owns it. A second call
@@ -241,7 +242,7 @@ struct FoundBuffer {
     const std::any* note = nullptr;          ///< as in FoundTexture
 };
 
-/// What a scope does to what is declared in it.
+/// The effect of a scope on the passes and resources that are declared in it.
 struct ScopeDesc {
     /// Is put behind the names of passes and resources, and before the ending of the scope around this one.
     /// So a graph can contain the same passes several times, for example once for each view.
@@ -270,7 +271,7 @@ class CANDELA_API Scope {
     Scope(detail::Declaration& declared, const ScopeDesc& desc);
 
     detail::Declaration& declared_;
-    std::string ending_;  // what is to come back
+    std::string ending_;  // of the scope around this one, as are the next two
     std::optional<std::string> key_ending_;
     std::uint32_t held_by_;
 };
