@@ -13,8 +13,8 @@
 #include <fmt/ranges.h>
 
 #include <candela/graph/execute.hpp>
+#include "engine/graph/details/runtime.hpp"
 #include "engine/graph/details/schedule.hpp"
-#include "engine/graph/details/state.hpp"
 
 namespace candela {
 namespace {
@@ -214,14 +214,14 @@ GraphDescription describe(const CompiledGraph& graph) {
 }
 
 GraphDescription GraphRuntime::describe() const {
-    if (!graph_) throw GraphError("there is no frame graph");
-    GraphDescription made = candela::describe(*graph_);
-    const std::vector<Resource>& resources = graph_->declared().resources;
+    if (!graph()) throw GraphError("there is no frame graph");
+    GraphDescription made = candela::describe(*graph());
+    const std::vector<Resource>& resources = graph()->declared().resources;
     auto described = made.resources.begin();
     for (std::size_t index = 0; index < resources.size(); ++index) {
-        const std::uint32_t object = graph_->plan().object[index];
+        const std::uint32_t object = graph()->plan().object[index];
         if (!is_described(resources[index], object)) continue;
-        const detail::Slot& slot = state_->slots[object];
+        const detail::Slot& slot = runtime_->state.slots[object];
         const bool is_import = resources[index].lifetime == Lifetime::imported;
         if (slot.filled || !is_import) {
             described->texture = slot.storage.texture;

@@ -7,16 +7,16 @@
 #include <fmt/format.h>
 
 #include <candela/graph/execute.hpp>
-#include "engine/graph/details/state.hpp"
+#include "engine/graph/details/runtime.hpp"
 
-namespace candela {
+namespace candela::detail {
 namespace {
 
-std::size_t hash_of(const detail::Slot& slot) {
+std::size_t hash_of(const Slot& slot) {
     return std::hash<std::string>{}(slot.key) ^ slot.declared.hash();
 }
 
-std::uint64_t byte_size(const detail::Slot& slot) {
+std::uint64_t byte_size(const Slot& slot) {
     return slot.storage.kind == ResourceKind::texture ? byte_size(slot.storage.texture)
                                                       : byte_size(slot.storage.buffer);
 }
@@ -24,15 +24,15 @@ std::uint64_t byte_size(const detail::Slot& slot) {
 /// Unused objects that other slots can take. A slot whose object was taken has object 0.
 class UnusedObjects {
  public:
-    explicit UnusedObjects(std::vector<detail::Slot>& slots) {
-        for (detail::Slot& slot : slots) {
+    explicit UnusedObjects(std::vector<Slot>& slots) {
+        for (Slot& slot : slots) {
             by_hash_.emplace(hash_of(slot), &slot);
         }
     }
 
     /// Gives the slot an object that was declared alike, if there is one. A persistent object keeps its
     /// current storage, which may be larger than declared.
-    void provide(detail::Slot& wanted) {
+    void provide(Slot& wanted) {
         const auto [first, last] = by_hash_.equal_range(hash_of(wanted));
         const auto found = std::find_if(first, last, [&](const auto& entry) {
             return entry.second->key == wanted.key && entry.second->declared == wanted.declared;
@@ -44,7 +44,7 @@ class UnusedObjects {
     }
 
  private:
-    std::unordered_multimap<std::size_t, detail::Slot*> by_hash_;
+    std::unordered_multimap<std::size_t, Slot*> by_hash_;
 };
 
 /// The back end of graphs without GPU resources.
@@ -73,110 +73,124 @@ NoBackend no_backend;
 
 }  // namespace
 
-GraphRuntime::GraphRuntime() : GraphRuntime(no_backend) {}
-GraphRuntime::GraphRuntime(Backend& backend) : backend_(backend), state_(std::make_unique<detail::State>()) {}
-
-GraphRuntime::~GraphRuntime() {
-    for (const detail::Slot& slot : state_->slots) {
+void Runtime::destroy_objects() {
+    for (const Slot& slot : state.slots) {
         destroy(slot);
     }
-    for (const detail::Slot& slot : free_pool_) {
+    for (const Slot& slot : free_pool) {
         destroy(slot);
     }
 }
 
-void GraphRuntime::switch_to(CompiledGraph graph) {
-    detail::State state = detail::make_state(graph);
+void Runtime::switch_to(CompiledGraph next) {
+    State made = make_state(next);
     std::vector<PassRecord> passes;
-    passes.reserve(state.step_count());
-    for (std::uint32_t position = 0; position < state.step_count(); ++position) {
-        const detail::PassNode& pass = graph.declared().passes[graph.plan().order[position]];
-        passes.push_back({.name = pass.name, .note = graph.declared().note_of(pass.note)});
+    passes.reserve(made.step_count());
+    for (const std::uint32_t index : next.plan().order) {
+        const PassNode& pass = next.declared().passes[index];
+        passes.push_back({.name = pass.name, .note = next.declared().note_of(pass.note)});
     }
-    if (verifying_) state.contents.resize(state.versions.size());
-    std::vector<detail::Slot> unused = free_pool_;
-    if (graph_) {
-        const std::vector<std::uint32_t> taken = detail::inherit(graph, state, *graph_, *state_);
+    if (verifying) made.contents.resize(made.versions.size());
+    std::vector<Slot> unused = free_pool;
+    if (graph) {
+        const std::vector<std::uint32_t> taken = inherit(next, made, *graph, state);
         for (std::size_t index = 0; index < taken.size(); ++index) {
-            const detail::Slot& slot = state_->slots[index];
-            if (taken[index] == detail::none && slot.owned) unused.push_back(slot);
+            const Slot& slot = state.slots[index];
+            if (taken[index] == none && slot.owned) unused.push_back(slot);
         }
     }
-    provide_objects(graph, state, unused);
+    provide_objects(next, made, unused);
 
     // Nothing fails from here on. Unused objects of the previous graph go to the free pool; the objects that
     // were in it before are destroyed, unless they were taken.
-    const auto pooled = unused.begin() + static_cast<std::ptrdiff_t>(free_pool_.size());
-    std::for_each(unused.begin(), pooled, [this](const detail::Slot& slot) { destroy(slot); });
+    const auto pooled = unused.begin() + static_cast<std::ptrdiff_t>(free_pool.size());
+    std::for_each(unused.begin(), pooled, [this](const Slot& slot) { destroy(slot); });
     unused.erase(unused.begin(), pooled);
-    std::erase_if(unused, [](const detail::Slot& slot) { return slot.object == 0; });
+    std::erase_if(unused, [](const Slot& slot) { return slot.object == 0; });
     // The planned barriers of the new graph do not cover the writes of the previous one.
-    if (graph_) pending_barriers_ = all_barriers;
-    free_pool_ = std::move(unused);
-    *state_ = std::move(state);
-    graph_ = std::move(graph);
-    record_.passes = std::move(passes);
+    if (graph) pending_barriers = all_barriers;
+    free_pool = std::move(unused);
+    state = std::move(made);
+    graph = std::move(next);
+    record.passes = std::move(passes);
 }
 
 /// Gives each owned slot without an object an unused one, or creates one. If the back end throws,
 /// destroys what was created.
-void GraphRuntime::provide_objects(const CompiledGraph& graph, detail::State& state,
-                                   std::vector<detail::Slot>& unused) {
+void Runtime::provide_objects(const CompiledGraph& next, State& made, std::vector<Slot>& unused) {
     UnusedObjects available(unused);
-    std::vector<std::uint32_t> made;
-    made.reserve(state.slots.size());
+    std::vector<Slot*> created;
+    created.reserve(made.slots.size());
     try {
-        for (std::uint32_t object = 0; object < state.slots.size(); ++object) {
-            detail::Slot& slot = state.slots[object];
+        for (std::uint32_t object = 0; object < made.slots.size(); ++object) {
+            Slot& slot = made.slots[object];
             if (!slot.owned || slot.object != 0) continue;
             available.provide(slot);
             if (slot.object != 0) continue;
-            create(slot, graph.declared().resources[graph.plan().owner[object]].name);
-            made.push_back(object);
+            create(slot, next.declared().resources[next.plan().owner[object]].name);
+            created.push_back(&slot);
         }
     } catch (...) {
-        for (const std::uint32_t object : made) {
-            destroy(state.slots[object]);
-        }
+        std::ranges::for_each(created, [this](const Slot* slot) { destroy(*slot); });
         throw;
     }
 }
 
-void GraphRuntime::create(detail::Slot& slot, std::string_view name) {
+void Runtime::create(Slot& slot, std::string_view name) {
     slot.object = slot.storage.kind == ResourceKind::texture
-                      ? backend_.create_texture(name, slot.storage.texture)
-                      : backend_.create_buffer(name, slot.storage.buffer);
+                      ? backend.create_texture(name, slot.storage.texture)
+                      : backend.create_buffer(name, slot.storage.buffer);
 }
 
-void GraphRuntime::destroy(const detail::Slot& slot) {
+void Runtime::destroy(const Slot& slot) {
     if (!slot.owned || slot.object == 0) return;
     if (slot.storage.kind == ResourceKind::texture) {
-        backend_.destroy_texture(slot.object);
+        backend.destroy_texture(slot.object);
     } else {
-        backend_.destroy_buffer(slot.object);
+        backend.destroy_buffer(slot.object);
     }
+}
+
+}  // namespace candela::detail
+
+namespace candela {
+
+GraphRuntime::GraphRuntime() : GraphRuntime(detail::no_backend) {}
+GraphRuntime::GraphRuntime(Backend& backend) : runtime_(std::make_unique<detail::Runtime>(backend)) {}
+GraphRuntime::~GraphRuntime() {
+    runtime_->destroy_objects();
+}
+
+void GraphRuntime::switch_to(CompiledGraph graph) {
+    runtime_->switch_to(std::move(graph));
+}
+
+const CompiledGraph* GraphRuntime::graph() const {
+    return runtime_->graph ? &*runtime_->graph : nullptr;
 }
 
 MemoryUse GraphRuntime::memory() const {
+    const detail::Runtime& now = *runtime_;
     MemoryUse use;
     const auto add = [&](const detail::Slot& slot) {
         const bool texture = slot.storage.kind == ResourceKind::texture;
-        if (slot.owned) (texture ? use.texture_bytes : use.buffer_bytes) += byte_size(slot);
+        if (slot.owned) (texture ? use.texture_bytes : use.buffer_bytes) += detail::byte_size(slot);
     };
-    for (const detail::Slot& slot : state_->slots) {
+    for (const detail::Slot& slot : now.state.slots) {
         add(slot);
     }
-    for (const detail::Slot& slot : free_pool_) {
+    for (const detail::Slot& slot : now.free_pool) {
         add(slot);
-        use.free_pool_bytes += byte_size(slot);
+        use.free_pool_bytes += detail::byte_size(slot);
     }
-    if (!graph_) return use;
-    for (std::uint32_t index = 0; index < graph_->declared().resources.size(); ++index) {
-        const detail::Resource& resource = graph_->declared().resources[index];
-        const std::uint32_t object = graph_->plan().object[index];
-        if (resource.lifetime != Lifetime::transient || object == detail::none) continue;
-        if (graph_->plan().owner[object] != index) {
-            use.shared_by_aliasing_bytes += byte_size(state_->slots[object]);
+    if (!now.graph) return use;
+    const detail::Plan& plan = now.graph->plan();
+    const std::vector<detail::Resource>& resources = now.graph->declared().resources;
+    for (std::uint32_t index = 0; index < resources.size(); ++index) {
+        const std::uint32_t object = plan.object[index];
+        if (resources[index].lifetime != Lifetime::transient || object == detail::none) continue;
+        if (plan.owner[object] != index) {
+            use.shared_by_aliasing_bytes += detail::byte_size(now.state.slots[object]);
         }
     }
     return use;

@@ -5,12 +5,9 @@
 #include <cstdint>
 #include <functional>
 #include <memory>
-#include <optional>
 #include <span>
-#include <string_view>
 #include <type_traits>
 #include <utility>
-#include <vector>
 
 #include <candela/api.hpp>
 #include <candela/ecs/world.hpp>
@@ -28,14 +25,8 @@ struct GraphDescription;
 
 namespace detail {
 
-struct Bound;
-struct Content;
-struct Output;
-struct Resource;
-struct Slot;
-struct State;
-struct Step;
-struct Storage;
+struct Running;
+struct Runtime;
 
 /// A value of any type, with how to compare it: null if the type has no operator==. Values are replaced,
 /// never modified.
@@ -99,7 +90,7 @@ class CANDELA_API Execution {
     /// Whether the result of the pass's last run is there, so that parts of it can stay. False in the first
     /// run, after GraphRuntime::invalidate, if the result was overwritten, or if the pass threw. Also false
     /// during verification, which thereby compares partial updates with a full one.
-    [[nodiscard]] bool has_result() const { return !has_no_result_; }
+    [[nodiscard]] bool has_result() const;
 
     /// Whether an input (a version that the pass reads or modifies in place) has changed since the pass last
     /// ran. For passes that update only parts of their previous result. Always true without one: see
@@ -112,7 +103,7 @@ class CANDELA_API Execution {
 
     /// Whether the host may give the frame up while it runs: see GraphRuntime::run. A pass that takes long
     /// then does its work in parts, and calls `end_if_unwanted` between them.
-    [[nodiscard]] bool may_end() const { return wanted_ != nullptr; }
+    [[nodiscard]] bool may_end() const;
     /// Asks the host whether the frame is still wanted. If not, ends the pass and the frame by an exception,
     /// which GraphRuntime::run catches. The pass then counts as not having run, and has no result that it
     /// could keep.
@@ -143,26 +134,17 @@ class CANDELA_API Execution {
     [[nodiscard]] bool history_valid(TextureHandle history) const;
 
  private:
-    friend GraphRuntime;
-    Execution(GraphRuntime& runtime, const World& world, World* writable)
-        : runtime_(runtime), world_(world), writable_(writable) {}
+    friend detail::Runtime;
+    explicit Execution(const detail::Running& pass) : pass_(pass) {}
 
-    [[nodiscard]] detail::Slot& slot(ResourceHandle handle, bool write) const;
     [[nodiscard]] ObjectId object_of(ResourceHandle resource) const;
     [[nodiscard]] std::uint64_t count_of(ResourceHandle buffer) const;
     void set_value(ResourceHandle value, detail::Value content);
     [[nodiscard]] const void* content(ResourceHandle value) const;
     [[nodiscard]] const void* previous_content(ResourceHandle value) const;
     void reserve_buffer(ResourceHandle buffer, std::uint64_t count);
-    [[nodiscard]] detail::Slot& reservable(ResourceHandle handle) const;
-    void replace(ResourceHandle handle, const detail::Storage& wanted);
 
-    GraphRuntime& runtime_;
-    const World& world_;
-    World* writable_;  // the same; null if the host does not let passes change it
-    const std::function<bool()>* wanted_ = nullptr;  // null: nobody is to be asked
-    std::uint32_t position_ = 0;
-    bool has_no_result_ = true;  // the running pass has no previous result that it could keep
+    const detail::Running& pass_;
 };
 
 /// Runs a compiled graph, frame by frame, and can switch to another graph. Owns what is kept between frames:
@@ -202,7 +184,7 @@ class CANDELA_API GraphRuntime {
     void switch_to(CompiledGraph graph);
 
     /// The current graph, or null before the first `switch_to`. Valid until the next `switch_to`.
-    [[nodiscard]] const CompiledGraph* graph() const { return graph_ ? &*graph_ : nullptr; }
+    [[nodiscard]] const CompiledGraph* graph() const;
 
     /// Sets an imported value, which stays until it is set again. If T has operator== and the new value
     /// equals the old, the readers do not run again because of it. Does nothing if only culled passes use the
@@ -245,7 +227,7 @@ class CANDELA_API GraphRuntime {
     /// Turns recording for `verify` on or off; initially off. While on, the outputs of a pass are read back
     /// (as digests) each time that it runs; while off, there is no cost.
     void set_verification(bool on);
-    [[nodiscard]] bool verifies() const { return verifying_; }
+    [[nodiscard]] bool verifies() const;
     /// Checks for undeclared inputs: runs the passes of the last frame again, including those that did not
     /// run in it, and compares what they write with what they wrote before. Textures and buffers are compared
     /// by the back end's digests, values with operator== where their type has it.
@@ -290,54 +272,11 @@ class CANDELA_API GraphRuntime {
     [[nodiscard]] GraphDescription describe() const;
 
  private:
-    friend Execution;
-    const FrameRecord& run(const World& world, World* writable, Timing timing,
-                           const std::function<bool()>& wanted);
-    void require_imports() const;
-    void require_no_systems() const;
-    [[nodiscard]] bool follows_system(const detail::Step& step) const;
-    void note_system(const detail::Step& step);
-    void mark(const World& world, std::uint32_t from);
-    void mark_dirty(const World& world, std::uint32_t from);
-    [[nodiscard]] bool mark_missing(std::uint32_t from);
-    [[nodiscard]] bool is_held(const detail::Step& step) const;
-    [[nodiscard]] bool dirty(const detail::Step& step, const World& world) const;
-    void run_step(Execution& execution, bool changed);
-    void begin_outputs(const detail::Step& step);
-    void begin_pass(std::uint32_t position);
-    void bind(const detail::Bound& bound);
-    void keep_record(detail::Step& step, const World& world, bool changed);
-    [[nodiscard]] bool has_results(const detail::Step& step) const;
-    [[nodiscard]] bool renewed_results(const detail::Step& step) const;
-    void note_contents(const detail::Step& step, bool changed);
-    [[nodiscard]] detail::Content content_of(const detail::Slot& slot) const;
-    [[noreturn]] void report_difference(const detail::Step& step, std::uint32_t version) const;
-    void release(std::uint32_t slot);
-    void turn_over(std::uint32_t slot);
-
-    void provide_objects(const CompiledGraph& graph, detail::State& state, std::vector<detail::Slot>& unused);
-    void create(detail::Slot& slot, std::string_view name);
-    void destroy(const detail::Slot& slot);
-
-    [[nodiscard]] const detail::Resource& resource(ResourceHandle handle) const;
-    [[nodiscard]] detail::Slot* slot_of(std::uint32_t resource);
-    [[nodiscard]] detail::Slot* import_slot(ResourceHandle handle);
     void bind(ResourceHandle imported, ObjectId object, const TextureDesc& texture, const BufferDesc& buffer);
-    void touch(ResourceHandle imported);
     void set_value(ResourceHandle imported, detail::Value value);
     [[nodiscard]] const void* content(ResourceHandle value) const;
 
-    Backend& backend_;
-    std::optional<CompiledGraph> graph_;
-    std::unique_ptr<detail::State> state_;
-    std::vector<detail::Slot> free_pool_;  // objects of the previous graph
-    FrameRecord record_;
-    std::uint64_t frame_ = 0;
-    std::vector<ObjectId> colours_;  // scratch: the colour attachments of the running pass
-    std::uint64_t clock_ = 0;
-    Barrier pending_barriers_ = Barrier::none;  // pending: planned for passes that were skipped
-    bool verifying_ = false;
-    bool repeating_ = false;  // during verify
+    std::unique_ptr<detail::Runtime> runtime_;
 };
 
 }  // namespace candela
