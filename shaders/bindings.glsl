@@ -77,7 +77,7 @@
 #define UNIT_RADIANCE 6
 #define UNIT_VPL_MAPS 7
 #define UNIT_VPL_SLOPES 8
-#define UNIT_MEAN 9
+#define UNIT_MIRROR_SHARES 9
 #define UNIT_INDIRECT 10
 #define UNIT_BUMPS 11
 #define UNIT_MIRRORED_ALBEDO 12
@@ -93,7 +93,6 @@
 #define UNIT_INDIRECT_DIRECTION UNIT_VPL_MAPS
 // Passes that shade read no picture.
 #define UNIT_GLOSS UNIT_RADIANCE
-#define UNIT_MIRROR_SHARES UNIT_MEAN
 // Passes that draw blended surfaces read nothing that mirrors have found.
 #define UNIT_PART UNIT_MIRRORED_ALBEDO
 // Passes that show what mirrors have found light nothing.
@@ -104,7 +103,7 @@
 // Passes that show textures read nothing else.
 #define UNIT_INSPECTED UNIT_BASE_COLOUR
 #define UNIT_FIRST_PICTURE UNIT_RADIANCE
-#define UNIT_SECOND_PICTURE UNIT_MEAN
+#define UNIT_SECOND_PICTURE UNIT_MIRROR_SHARES
 // Passes that enlarge pictures read no materials.
 #define UNIT_PICTURE_DEPTH UNIT_ALBEDO
 #define UNIT_PICTURE_WEIGHTS UNIT_DEPTH

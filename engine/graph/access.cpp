@@ -42,13 +42,9 @@ void Runtime::touch(ResourceHandle imported) {
     state.versions[graph->plan().version(imported.resource, 0)].stamp = ++clock;
 }
 
-/// The slot of a resource or of a history. Until turn_over was called in a frame, a resource still holds its
-/// content from the end of the previous frame, so its own slot is the history.
 Slot* Runtime::slot_of(std::uint32_t index) {
-    const std::uint32_t base = graph->declared().resources[index].history_of;
-    const std::uint32_t slot = graph->plan().object[base == none ? index : base];
-    if (slot == none) return nullptr;
-    return &state.slots[base != none && state.turned[slot] ? slot + 1 : slot];
+    const std::uint32_t slot = graph->plan().object[index];
+    return slot == none ? nullptr : &state.slots[slot];
 }
 
 const void* Runtime::content(ResourceHandle value) const {
@@ -107,7 +103,7 @@ void GraphRuntime::bind(ResourceHandle imported, ObjectId object, const TextureD
     slot->object = object;  // may be 0: the window's framebuffer
     slot->storage.texture = texture;
     slot->storage.buffer = buffer;
-    slot->filled = true;
+    slot->bound = true;
     runtime_->touch(imported);
 }
 
@@ -183,16 +179,6 @@ bool Execution::changed(ResourceHandle read) const {
 
 bool Execution::may_end() const {
     return pass_.wanted != nullptr;
-}
-
-bool Execution::history_valid(TextureHandle history) const {
-    const detail::Slot& previous = pass_.slot(history, false);
-    const detail::Resource& resource = pass_.runtime.resource(history);
-    if (resource.history_of == detail::none) {
-        throw GraphError(fmt::format("{} is not a history", resource.title()));
-    }
-    const detail::Slot& present = *pass_.runtime.slot_of(resource.history_of);
-    return previous.filled && previous.storage == present.storage;
 }
 
 void Execution::reserve_buffer(ResourceHandle buffer, std::uint64_t count) {

@@ -33,24 +33,19 @@ void check_passes(Declaration& declared, std::string_view PassNode::*text, std::
 }
 
 void check_texture(Declaration& declared, const Resource& resource) {
-    if (resource.history_of != none) return;  // it has the description of a texture that is checked
     if (const std::string why = why_impossible(resource.storage->texture); !why.empty()) {
         declared.error(ErrorCode::impossible_texture, "{} is not possible: {}", resource.title(), why);
     }
 }
 
 /// Checks that textures are possible, that the names and the keys of persistent and imported resources are
-/// unique within a kind, and that every resource with a history is written.
+/// unique within a kind.
 void check_resources(Declaration& declared) {
     using Texts = std::array<std::unordered_set<std::string_view>, 3>;  // by kind
     Texts names;
     Texts keys;
     for (const Resource& resource : declared.resources) {
         if (resource.storage->kind == ResourceKind::texture) check_texture(declared, resource);
-        if (resource.history != none && resource.versions == 0) {
-            declared.error(ErrorCode::unwritten_read, "{} has a history, but no pass writes it",
-                           resource.title());
-        }
         const ResourceKind kind = resource.storage->kind;
         if (!resource.is_kept()) continue;
         const bool new_name = names.at(static_cast<std::size_t>(kind)).insert(resource.name).second;
@@ -110,7 +105,7 @@ std::vector<std::uint32_t> needed_passes(const Declaration& declared, const Plan
         const std::uint32_t pass = open.back();
         open.pop_back();
         for (const Access& access : declared.accesses_of(pass)) {
-            need(plan.writer[plan.needed_version(declared, access)]);
+            need(plan.writer[plan.needed_version(access)]);
         }
     }
     std::vector<std::uint32_t> kept;

@@ -24,11 +24,6 @@ using detail::Dependency;
 using detail::none;
 using detail::Resource;
 
-/// `object`: of the plan.
-bool is_described(const Resource& resource, std::uint32_t object) {
-    return resource.history_of == none && object != none;
-}
-
 /// Makes the description of a graph.
 class Describer {
  public:
@@ -54,7 +49,7 @@ class Describer {
         index_.assign(declared_.resources.size(), none);
         for (std::uint32_t index = 0; index < declared_.resources.size(); ++index) {
             const Resource& resource = declared_.resources[index];
-            if (is_described(resource, plan_.object[index])) {
+            if (plan_.object[index] != none) {
                 index_[index] = detail::size_of(made_.resources);
                 made_.resources.push_back(describe(resource, index, numbers[plan_.object[index]]));
             }
@@ -82,14 +77,7 @@ class Describer {
                                .first = plan_.lifetime[index].first,
                                .last = plan_.lifetime[index].last};
         if (object != none) made.object = object;
-        if (resource.history != none) made.history_object = object + 1;
         return made;
-    }
-
-    /// In GraphDescription::resources; of a history that of its texture.
-    [[nodiscard]] std::size_t index_of(const Access& access) const {
-        const std::uint32_t base = declared_.resources[access.resource].history_of;
-        return index_[base == none ? access.resource : base];
     }
 
     void add_pass(std::uint32_t position) {
@@ -104,9 +92,8 @@ class Describer {
         }
         for (const Access& access : declared_.accesses_of(pass)) {
             const Resource& resource = declared_.resources[access.resource];
-            DescribedAccess use{.resource = index_of(access),
+            DescribedAccess use{.resource = index_[access.resource],
                                 .version = access.version,
-                                .history = resource.history_of != none,
                                 .write = access.write,
                                 .update = access.update};
             if (resource.storage->kind != ResourceKind::value) {
@@ -123,14 +110,6 @@ class Describer {
         std::ranges::sort(kept);
         for (const Dependency& dependency : detail::find_dependencies(declared_, plan_, kept)) {
             add_edge(dependency, subject_of(dependency));
-        }
-        for (const std::uint32_t pass : kept) {
-            for (const Access& access : declared_.accesses_of(pass)) {
-                const Resource& resource = declared_.resources[access.resource];
-                if (resource.history_of == none) continue;
-                const std::uint32_t writer = plan_.writer[plan_.needed_version(declared_, access)];
-                add_edge({writer, pass, DependencyKind::history}, resource.name);
-            }
         }
         std::ranges::sort(made_.edges, {}, [](const DescribedEdge& edge) {
             return std::tuple(edge.to, edge.from, edge.kind);
@@ -166,13 +145,8 @@ class Describer {
     std::map<std::tuple<std::size_t, std::size_t, DependencyKind>, std::size_t> edge_;  // its index
 };
 
-std::string name_of(const GraphDescription& graph, std::size_t resource, bool history) {
-    return (history ? "history of " : "") + graph.resources[resource].name;
-}
-
 std::string access_text(const GraphDescription& graph, const DescribedAccess& access) {
-    std::string text = name_of(graph, access.resource, access.history);
-    if (!access.history) text += fmt::format(" v{}", access.version);
+    std::string text = fmt::format("{} v{}", graph.resources[access.resource].name, access.version);
     if (access.usage) text += fmt::format(" ({})", to_string(*access.usage));
     return text;
 }
@@ -185,8 +159,7 @@ std::string pass_text(const GraphDescription& graph, std::size_t position) {
         text += fmt::format("      {} {}\n", verb, what);
     };
     for (const DescribedEdge& edge : graph.edges) {
-        const bool is_order = edge.to == position && edge.kind != DependencyKind::history;
-        if (is_order) line("after", edge_text(graph, edge));
+        if (edge.to == position) line("after", edge_text(graph, edge));
     }
     if (pass.barrier != Barrier::none) line("barrier", to_string(pass.barrier));
     for (const DescribedComponent& component : pass.components) {
@@ -203,7 +176,6 @@ std::string resource_text(const DescribedResource& resource) {
     std::string text = fmt::format("  {}: {}, {} [{}..{}]", resource.name, storage_text(resource),
                                    to_string(resource.lifetime), resource.first, resource.last);
     if (resource.object) text += fmt::format(", object {}", *resource.object);
-    if (resource.history_object) text += fmt::format(", history in {}", *resource.history_object);
     return text + "\n";
 }
 
@@ -220,10 +192,10 @@ GraphDescription GraphRuntime::describe() const {
     auto described = made.resources.begin();
     for (std::size_t index = 0; index < resources.size(); ++index) {
         const std::uint32_t object = graph()->plan().object[index];
-        if (!is_described(resources[index], object)) continue;
+        if (object == none) continue;
         const detail::Slot& slot = runtime_->state.slots[object];
         const bool is_import = resources[index].lifetime == Lifetime::imported;
-        if (slot.filled || !is_import) {
+        if (slot.bound || !is_import) {
             described->texture = slot.storage.texture;
             described->buffer = slot.storage.buffer;
         }
@@ -233,8 +205,8 @@ GraphDescription GraphRuntime::describe() const {
 }
 
 std::string_view to_string(DependencyKind kind) {
-    static constexpr std::array<std::string_view, 7> names{
-        "result", "overwrite", "component result", "component overwrite", "side effect", "after", "history"};
+    static constexpr std::array<std::string_view, 6> names{
+        "result", "overwrite", "component result", "component overwrite", "side effect", "after"};
     return names.at(static_cast<std::size_t>(kind));
 }
 

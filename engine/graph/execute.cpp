@@ -53,7 +53,6 @@ const FrameRecord& Runtime::run(const World& world, World* writable, Timing timi
         each.ran = each.verified = false;
         each.cpu_ms = 0;
     }
-    if (record.complete) std::fill(state.turned.begin(), state.turned.end(), std::uint8_t{0});
     record.complete = false;
     Running pass{*this, world, writable, wanted ? &wanted : nullptr};
     Clock::time_point last = timing == Timing::on ? Clock::now() : Clock::time_point{};
@@ -100,7 +99,7 @@ const FrameRecord& Runtime::run(const World& world, World* writable, Timing timi
 void Runtime::require_imports() const {
     for (const std::uint32_t index : state.imports) {
         const Slot& slot = state.slots[graph->plan().object[index]];
-        if (slot.filled || slot.value.content) continue;
+        if (slot.bound || slot.value.content) continue;
         const Resource& resource = graph->declared().resources[index];
         const std::string_view lack =
             resource.storage->kind == ResourceKind::value ? "has not been set" : "has not been bound";
@@ -240,7 +239,6 @@ bool Runtime::renewed_results(const Step& step) const {
 /// result that counts as valid.
 void Runtime::begin_outputs(const Step& step) {
     for (const Output& output : step.outputs) {
-        if (output.swaps_history && !repeating) turn_over(output.slot);
         if (output.value) state.slots[output.slot].changed = state.holds[output.slot] != output.version;
         release(output.slot);
     }
@@ -250,14 +248,6 @@ void Runtime::release(std::uint32_t slot) {
     std::uint32_t& held = state.holds[slot];
     if (held != none) state.versions[held].present = false;
     held = none;
-}
-
-/// Swaps the two objects of a resource with a history: the current content becomes the history, and the
-/// object of the old history will be written. Not a second time in a frame that several runs complete.
-void Runtime::turn_over(std::uint32_t slot) {
-    if (state.turned[slot] == 0) std::swap(state.slots[slot], state.slots[slot + 1]);
-    state.slots[slot].filled = false;
-    state.turned[slot] = 1;
 }
 
 void Runtime::begin_pass(std::uint32_t position) {
@@ -304,7 +294,6 @@ void Runtime::keep_record(Step& step, const World& world, bool changed) {
         release(output.slot);
         state.holds[output.slot] = output.version;
         version.present = true;
-        if (output.swaps_history) state.slots[output.slot].filled = true;
         if (changed && (!output.value || state.slots[output.slot].changed)) version.stamp = clock;
     }
     if (verifying) note_contents(step, changed);

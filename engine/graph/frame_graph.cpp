@@ -39,13 +39,6 @@ ResourceHandle add_resource(Declaration& declared, const detail::Name& name, con
     return {declared.id, detail::size_of(declared.resources) - 1, 0};
 }
 
-/// Empty if the resource can have a history.
-std::string_view why_no_history(const Resource& base) {
-    if (base.lifetime == Lifetime::imported) return "is imported";
-    if (base.history_of != none) return "is a history itself";
-    return base.updated ? "is updated in place" : "";
-}
-
 /// See FrameGraph::find_texture. A null handle if there is none.
 ResourceHandle find(const Declaration& declared, std::string_view name, ResourceKind kind) {
     for (std::uint32_t index = detail::size_of(declared.resources); index-- > 0;) {
@@ -145,26 +138,6 @@ ResourceHandle FrameGraph::add_buffer(std::string_view name, const BufferDesc& d
 
 ResourceHandle FrameGraph::add_value(std::string_view name, std::type_index type, Lifetime lifetime) {
     return add_resource(*declared_, declared_->store_name(name), {.type = type}, lifetime);
-}
-
-TextureHandle FrameGraph::history(TextureHandle texture) {
-    if (!declared_->owns(texture, ResourceKind::texture)) {
-        declared_->error(ErrorCode::foreign_handle, "history of a texture {}", declared_->fault_of(texture));
-        return {};
-    }
-    const Resource base = declared_->resources[texture.resource];
-    if (const std::string_view why = why_no_history(base); !why.empty()) {
-        declared_->error(ErrorCode::wrong_usage, "{} has no history: it {}", base.title(), why);
-        return texture;
-    }
-    if (base.history != none) return {{declared_->id, base.history, 0}};
-
-    const ResourceHandle history =
-        add_resource(*declared_, {base.name, base.key}, *base.storage, Lifetime::persistent);
-    declared_->resources[history.resource].history_of = texture.resource;
-    declared_->resources[texture.resource].history = history.resource;
-    declared_->resources[texture.resource].lifetime = Lifetime::persistent;
-    return {history};
 }
 
 std::optional<FoundTexture> FrameGraph::find_texture(std::string_view name) const {

@@ -169,8 +169,7 @@ void Pass::declare_read(ResourceHandle handle, ResourceKind kind, Binding bindin
                                "pass '{}' reads {} as it was before pass '{}' wrote it", name,
                                resource.title(), writer_of(declared_, handle.resource, handle.version + 1));
     }
-    const bool given = resource.lifetime == Lifetime::imported || resource.history_of != none;
-    if (handle.version == 0 && !given) {
+    if (handle.version == 0 && resource.lifetime != Lifetime::imported) {
         declared_.error(ErrorCode::unwritten_read, "pass '{}' reads {}, which no pass has written", name,
                         resource.title());
     }
@@ -212,7 +211,6 @@ ResourceHandle Pass::declare_write(ResourceHandle handle, ResourceKind kind, Bin
                         resource.title(), why);
         return handle;
     };
-    if (resource.history_of != none) return refuse("the history of ", "is read only");
     if (kind == ResourceKind::value && resource.lifetime == Lifetime::imported) {
         return refuse("", "the host sets");
     }
@@ -235,12 +233,10 @@ ResourceHandle Pass::declare_update(ResourceHandle handle, ResourceKind kind, Bi
     const ResourceHandle written = declare_write(handle, kind, binding);
     if (declared_.accesses.size() == count) return written;  // the write is an error
     declared_.accesses.back().update = true;
-    Resource& resource = declared_.resources[handle.resource];
-    resource.updated = true;
-    if (resource.lifetime != Lifetime::persistent || resource.history != none || handle.version != 0) {
+    const Resource& resource = declared_.resources[handle.resource];
+    if (resource.lifetime != Lifetime::persistent || handle.version != 0) {
         declared_.error(ErrorCode::wrong_usage,
-                        "pass '{}' updates {}: only version 0 of what is persistent and has no history can "
-                        "be updated",
+                        "pass '{}' updates {}: only version 0 of what is persistent can be updated",
                         declared_.passes.back().name, resource.title());
     }
     return written;

@@ -34,6 +34,9 @@ void set_blending(const Functions& gl, Blending blending) {
         case Blending::cover:
             gl.BlendFuncSeparate(GL_ONE, GL_ONE_MINUS_SRC1_COLOR, GL_ONE, GL_ZERO);
             break;
+        case Blending::mean:
+            gl.BlendFunc(GL_ONE, GL_ONE_MINUS_SRC1_COLOR);
+            break;
     }
     gl.BlendEquation(GL_FUNC_ADD);
 }

@@ -11,8 +11,9 @@ enum class DepthTest : std::uint8_t { off, nearer, equal, always };
 
 enum class Blending : std::uint8_t {
     off,
-    add,   ///< adds to colour and replaces alpha
-    cover  ///< as `add`, after what is there is multiplied by 1 - the second output of the shader
+    add,    ///< adds to colour and replaces alpha
+    cover,  ///< as `add`, after what is there is multiplied by 1 - the second output of the shader
+    mean    ///< as `cover`, alpha as well
 };
 
 enum class Culling : std::uint8_t { off, back, front };

@@ -67,14 +67,14 @@ void list_pass(GraphSelection& selection, const GraphDescription& graph) {
     if (pass == graph.passes.end()) return;
     for (const bool write : {false, true}) {
         for (const DescribedAccess& access : pass->accesses) {
-            if (access.write == write && !access.history) {
+            if (access.write == write) {
                 list_resource(graph, access.resource, write ? "writes" : "reads", selection.resource);
             }
         }
     }
     const auto position = static_cast<std::size_t>(pass - graph.passes.begin());
     for (const DescribedEdge& edge : graph.edges) {
-        if (edge.to != position || edge.kind == DependencyKind::history) continue;
+        if (edge.to != position) continue;
         ImGui::TextDisabled("after %s", edge_text(graph, edge).c_str());
     }
 }
@@ -83,7 +83,7 @@ void list_pass(GraphSelection& selection, const GraphDescription& graph) {
 using Anchors = std::vector<std::optional<ImVec2>>;
 
 void draw_arc(const Anchors& anchors, const DescribedEdge& edge, float space, ImU32 colour, float thickness) {
-    if (edge.kind == DependencyKind::history || !anchors[edge.from] || !anchors[edge.to]) return;
+    if (!anchors[edge.from] || !anchors[edge.to]) return;
     const ImVec2 from = *anchors[edge.from];
     const ImVec2 to = *anchors[edge.to];
     // The further apart, the further out, up to the space at the left.

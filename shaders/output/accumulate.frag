@@ -1,19 +1,14 @@
-// Running mean of the radiance of `count` frames. One fragment per pixel.
+// Running mean of the radiance of `count` frames, of which the target has that of those before. One fragment per pixel.
 #include "bindings.glsl"
 
 layout(binding = UNIT_RADIANCE) uniform sampler2D radiance;
-layout(binding = UNIT_MEAN) uniform sampler2D mean_before;
 
-uniform uint count;   // frames in the mean, this one included
+uniform uint count;  // frames in the mean, this one included
 
-layout(location = 0) out vec4 mean;
+layout(location = 0, index = 0) out vec4 added;
+layout(location = 0, index = 1) out vec4 share;  // of this frame in the mean
 
 void main() {
-    ivec2 at = ivec2(gl_FragCoord.xy);
-    vec4 now = texelFetch(radiance, at, 0);
-    mean = now;
-    if (count > 1u) {
-        vec4 before = texelFetch(mean_before, at, 0);
-        mean = before + (now - before) / float(count);
-    }
+    share = vec4(1.0 / float(count));
+    added = share * texelFetch(radiance, ivec2(gl_FragCoord.xy), 0);
 }

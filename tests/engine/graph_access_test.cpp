@@ -16,21 +16,17 @@ namespace {
 
 using namespace candela;
 
-TEST_CASE_FIXTURE(GraphFixture,
-                  "graph access: reserve() grows a buffer, resizes a texture, and invalidates its history") {
+TEST_CASE_FIXTURE(GraphFixture, "graph access: reserve() grows a buffer and resizes a texture") {
     const auto wanted = graph.import_value<std::uint64_t>("wanted");
     const auto blank = graph.buffer<float>("vpls", 100, Lifetime::persistent);
-    const TextureHandle map = texture("map");
-    const TextureHandle previous = graph.history(map);
-    std::vector<bool> valid;
+    const TextureHandle map = texture("map", Lifetime::persistent);
     std::uint64_t room = 0;
     graph.add("trace", [&](Pass& pass) {
         pass.read(wanted);
-        pass.read(previous, Usage::sampled);
         const auto vpls = pass.write(blank, Usage::storage);
         const auto drawn = pass.write(map, Usage::layer_target);
         pass.side_effect();
-        pass.run([&, wanted, vpls, drawn, previous](Execution& run) {
+        pass.run([&, wanted, vpls, drawn](Execution& run) {
             const std::uint64_t count = run.value(wanted);
             run.reserve(vpls, count);
             const TextureDesc desc{{static_cast<std::uint32_t>(count), 1}};
@@ -39,7 +35,6 @@ TEST_CASE_FIXTURE(GraphFixture,
             CHECK(backend.objects.at(run.object(drawn)).texture == desc);
             CHECK(backend.objects.at(run.object(vpls)).buffer == BufferDesc{run.count(vpls), sizeof(float)});
             room = run.count(vpls);
-            valid.push_back(run.history_valid(previous));
         });
     });
     switch_to();
@@ -61,8 +56,7 @@ TEST_CASE_FIXTURE(GraphFixture,
     CHECK(described(runtime.describe(), "vpls").buffer.count == 1000);
     CHECK(described(runtime.describe(), "map").texture.size == glm::uvec2(1000, 1));
     CHECK(room_for(1) == 1000);  // never shrinks
-    CHECK(valid == std::vector<bool>{false, false, true, false, false});
-    CHECK(backend.objects.size() == 3);
+    CHECK(backend.objects.size() == 2);
     CHECK(backend.misuse.empty());
 }
 
@@ -91,7 +85,6 @@ TEST_CASE_FIXTURE(GraphFixture, "graph access: a pass may only access what it ha
             attempt([&] { (void)run.object(foreign); });
             attempt([&] { (void)run.value(unset); });
             attempt([&] { run.reserve(a, colour); });
-            attempt([&] { (void)run.history_valid(a); });
             attempt([&] { (void)run.previous(unset); });
         });
     });
@@ -103,7 +96,6 @@ TEST_CASE_FIXTURE(GraphFixture, "graph access: a pass may only access what it ha
                                              "a handle is not of the current frame graph",
                                              "value 'unset' has not been set",
                                              "pass 'use' writes texture 'a' without having declared it",
-                                             "texture 'a' is not a history",
                                              "pass 'use' asks for the previous content of value 'unset', "
                                              "but does not update it"});
 }

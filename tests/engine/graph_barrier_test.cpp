@@ -41,12 +41,6 @@ Barrier bit_of(ResourceKind kind, Usage usage) {
 }
 
 std::vector<Event> unroll(const Graph& graph, const CompiledGraph& compiled, std::size_t frames) {
-    std::vector<std::uint32_t> first_object;
-    std::uint32_t index = 0;
-    for (const random_graph::Resource& resource : graph.resources) {
-        first_object.push_back(compiled.plan().object[index]);
-        index += resource.has_history ? 2 : 1;
-    }
     std::vector<Event> events;
     const std::size_t count = compiled.plan().order.size();
     for (std::size_t frame = 0; frame < frames; ++frame) {
@@ -55,9 +49,7 @@ std::vector<Event> unroll(const Graph& graph, const CompiledGraph& compiled, std
                  graph.passes[compiled.plan().order[position]].accesses) {
                 const random_graph::Resource& resource = graph.resources[access.resource];
                 if (resource.kind == ResourceKind::value) continue;
-                const std::size_t turn = resource.has_history ? (frame + (access.previous ? 1 : 0)) % 2 : 0;
-                events.push_back({frame * count + position,
-                                  first_object[access.resource] + static_cast<std::uint32_t>(turn),
+                events.push_back({frame * count + position, compiled.plan().object[access.resource],
                                   bit_of(resource.kind, access.usage), access.write,
                                   access.write && access.usage == Usage::storage});
             }
@@ -116,9 +108,8 @@ TEST_CASE(
         const Graph graph = random_graph::make({.passes = 10});
         const CompiledGraph compiled = random_graph::compile(graph).take();
         const auto& barriers = compiled.plan().barrier;
-        // A hazard spans at most two frames (with histories), so five frames show each hazard together with
-        // the others.
-        const std::vector<Hazard> hazards = hazards_of(unroll(graph, compiled, 5));
+        // A hazard ends in the next frame at the latest, so three frames show each together with the others.
+        const std::vector<Hazard> hazards = hazards_of(unroll(graph, compiled, 3));
         for (const Hazard& hazard : hazards) {
             bool served = false;
             for (std::size_t time = hazard.early + 1; time <= hazard.late; ++time) {

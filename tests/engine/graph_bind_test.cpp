@@ -78,24 +78,6 @@ TEST_CASE_FIXTURE(Binds, "an object that the pass replaces is bound again") {
     CHECK(backend.misuse.empty());
 }
 
-TEST_CASE_FIXTURE(Binds, "a history is bound as the object that was written in the previous frame") {
-    const TextureHandle blank = texture("mean", Lifetime::persistent);
-    const TextureHandle previous = graph.history(blank);
-    ObjectId written = 0;
-    graph.add("accumulate", [&](Pass& pass) {
-        pass.read(previous, {Usage::sampled, 0});
-        const TextureHandle mean = pass.write(blank, Usage::colour_target);
-        pass.side_effect();
-        pass.run([=, this, &written](Execution& run) {
-            CHECK(bound(Usage::sampled, 0) == run.object(previous));
-            if (written != 0) CHECK(bound(Usage::sampled, 0) == written);
-            written = run.object(mean);
-        });
-    });
-    switch_to();
-    for (int frame = 0; frame < 3; ++frame) run();
-}
-
 TEST_CASE_FIXTURE(Binds, "a binding point for a usage that has none is an error") {
     graph.add("draws", [&](Pass& pass) {
         static_cast<void>(pass.write(texture("picture"), {Usage::colour_target, 1}));

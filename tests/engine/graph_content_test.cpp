@@ -67,7 +67,7 @@ std::set<std::size_t> made_again(const Graph& graph, const std::vector<std::uint
 TEST_CASE("graph: running only the dirty passes gives the same results as running all" *
           doctest::test_suite("random")) {
     CHECK(rc::check([] {
-        const Graph graph = random_graph::make({.passes = 20, .histories = false});
+        const Graph graph = random_graph::make({.passes = 20});
         Host host = random_graph::make_host(graph);
         Machine machine(graph);
         for (int frame = 0; frame < 6; ++frame) {
@@ -82,7 +82,7 @@ TEST_CASE("graph: running only the dirty passes gives the same results as runnin
 
 TEST_CASE("graph: all legal orders give the same results" * doctest::test_suite("random")) {
     CHECK(rc::check([] {
-        const Graph graph = random_graph::make({.passes = 20, .histories = false});
+        const Graph graph = random_graph::make({.passes = 20});
         Host host = random_graph::make_host(graph);
         Machine machine(graph);
         for (std::uint32_t seed = 0; seed < 6; ++seed) {
@@ -118,7 +118,7 @@ Graph varied(Graph graph) {
 TEST_CASE("graph: switching between graphs that differ a little gives the same results as running all" *
           doctest::test_suite("random")) {
     CHECK(rc::check([] {
-        const Graph one = random_graph::make({.passes = 20, .histories = false});
+        const Graph one = random_graph::make({.passes = 20});
         const Graph other = varied(one);
         Host host = random_graph::make_host(one);
         Machine machine(one);
@@ -135,29 +135,10 @@ TEST_CASE("graph: switching between graphs that differ a little gives the same r
     }));
 }
 
-TEST_CASE("graph: with histories, results are those of a plain evaluation" * doctest::test_suite("random")) {
-    CHECK(rc::check([] {
-        const Graph graph = random_graph::make({.passes = 20});
-        Host host = random_graph::make_host(graph);
-        Machine machine(graph);
-        Meaning before;
-        for (int frame = 0; frame < 6; ++frame) {
-            const Meaning expected =
-                meaning(graph, *machine.runtime().graph(), host, frame == 0 ? nullptr : &before);
-            machine.provide(host);
-            machine.runtime().invalidate();  // run all: histories are not inputs
-            (void)machine.run();
-            machine.check(expected);
-            before = expected;
-            edit(host);
-        }
-    }));
-}
-
 TEST_CASE("graph: abandoned frames give the same results as running all, whatever the host edits meanwhile" *
           doctest::test_suite("random")) {
     CHECK(rc::check([] {
-        const Graph graph = random_graph::make({.passes = 20, .histories = false});
+        const Graph graph = random_graph::make({.passes = 20});
         Host host = random_graph::make_host(graph);
         Machine machine(graph);
         for (int frame = 0; frame < 6; ++frame) {
@@ -176,35 +157,6 @@ TEST_CASE("graph: abandoned frames give the same results as running all, whateve
     }));
 }
 
-TEST_CASE("graph: histories are those of the last complete frame" * doctest::test_suite("random")) {
-    CHECK(rc::check([] {
-        const Graph graph = random_graph::make({.passes = 20});
-        Host host = random_graph::make_host(graph);
-        Machine machine(graph);
-        Meaning before;
-        for (int frame = 0; frame < 6; ++frame) {
-            machine.runtime().invalidate();  // run all: histories are not inputs
-            bool complete = false;
-            for (auto tries = random_graph::choose(4); tries > 0 && !complete; --tries) {
-                machine.provide(host);
-                complete = machine.run_some(static_cast<int>(random_graph::choose(30))).complete;
-                if (complete || random_graph::one_in(2)) continue;
-                edit(host);
-                machine.runtime().invalidate();
-            }
-            if (!complete) {
-                machine.provide(host);
-                (void)machine.run();
-            }
-            const Meaning expected =
-                meaning(graph, *machine.runtime().graph(), host, frame == 0 ? nullptr : &before);
-            machine.check(expected);
-            before = expected;
-            edit(host);
-        }
-    }));
-}
-
 /// Whether nothing else is ever written to the object that holds the pass's result.
 bool stays(const Graph& graph, const std::vector<std::uint32_t>& objects,
            const random_graph::Access& result) {
@@ -216,7 +168,7 @@ TEST_CASE("graph: without changes, only passes that always run, their readers an
           doctest::test_suite("random")) {
     // In a small graph most passes run in every frame, which would test nothing.
     CHECK(rc::check([] {
-        const Graph graph = random_graph::make({.passes = 60, .histories = false, .systems = false});
+        const Graph graph = random_graph::make({.passes = 60, .systems = false});
         const Host host = random_graph::make_host(graph);
         Machine machine(graph);
         machine.provide(host);

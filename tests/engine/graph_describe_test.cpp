@@ -141,31 +141,6 @@ resources
 )");
 }
 
-TEST_CASE("graph description: a history has an object of its own, and its writer is not culled") {
-    FrameGraph graph;
-    const TextureHandle blank = graph.texture("accumulated", colour);
-    const TextureHandle previous = graph.history(blank);
-    const TextureHandle mixed = graph.add("mix", [&](Pass& pass) {
-        pass.read(previous, Usage::sampled);
-        return pass.write(blank, Usage::colour_target);
-    });
-    (void)mixed;
-    graph.add("compare", [&](Pass& pass) {
-        pass.read(previous, Usage::sampled);
-        pass.side_effect();
-    });
-    CHECK(text_of(graph) == R"(
-passes
-  0 mix
-      read history of accumulated (sampled)
-      write accumulated v1 (colour target)
-  1 compare (side effect)
-      read history of accumulated (sampled)
-resources
-  accumulated: texture 64x32 rgba16f, persistent [0..0], object 0, history in 1
-)");
-}
-
 TEST_CASE("graph description: systems, values and planned barriers") {
     FrameGraph graph;
     const auto lights = graph.add("gather-lights", [&](Pass& pass) {
@@ -237,7 +212,6 @@ TEST_CASE("graph description: passes, resources and edges, two passes having one
         const TextureHandle mixed = graph.texture("mixed", colour);
         pass.read(drawn.first, Usage::sampled);
         pass.read(drawn.second, Usage::uniform);
-        pass.read(graph.history(mixed), Usage::sampled);
         (void)pass.write(mixed, Usage::colour_target);
         pass.side_effect();
     });
@@ -252,19 +226,16 @@ TEST_CASE("graph description: passes, resources and edges, two passes having one
     CHECK(description.resources[2].buffer == BufferDesc{3, sizeof(int)});
     CHECK(description.edges ==
           std::vector<DescribedEdge>{{0, 1, DependencyKind::result, {"number"}},
-                                     {1, 2, DependencyKind::result, {"colour", "counts"}},
-                                     {2, 2, DependencyKind::history, {"mixed"}}});
+                                     {1, 2, DependencyKind::result, {"colour", "counts"}}});
 
     const DescribedPass& mix = description.passes[2];
     CHECK(mix.name == "mix");
     CHECK(mix.side_effect);
     CHECK(mix.barrier == Barrier::uniform);
-    REQUIRE(mix.accesses.size() == 4);
+    REQUIRE(mix.accesses.size() == 3);
     CHECK(mix.accesses[1].usage == Usage::uniform);
     CHECK_FALSE(mix.accesses[1].write);
-    CHECK(mix.accesses[2].history);
-    CHECK(mix.accesses[3].resource == mix.accesses[2].resource);
-    CHECK(mix.accesses[3].write);
+    CHECK(mix.accesses[2].write);
 }
 
 }  // namespace

@@ -55,17 +55,15 @@ TEST_CASE("graph error: handles without a graph, of another graph, of another ki
     graph.add("kind", [&](Pass& pass) {
         pass.read(BufferHandle<int>{{own.graph, own.resource, 0}}, Usage::storage);
     });
-    (void)graph.history(foreign);
 
     const std::vector<CompileError> errors = errors_of(graph);
-    REQUIRE(errors.size() == 7);
+    REQUIRE(errors.size() == 6);
     for (const CompileError& error : errors) {
         CHECK(error.code == ErrorCode::foreign_handle);
     }
     CHECK(errors[0].message == "pass 'default' reads a texture by a null handle");
     CHECK(errors[2].message == "pass 'write' writes a texture of another graph");
     CHECK(errors[5].message == "pass 'kind' reads a buffer by a handle that is not of one");
-    CHECK(errors[6].message == "history of a texture of another graph");
 }
 
 TEST_CASE("graph error: reading an overwritten version names both passes") {
@@ -102,66 +100,37 @@ TEST_CASE("graph error: reads of resources that no pass writes") {
     CHECK(errors[2].message == "pass 'use' reads value 'number', which no pass has written");
 }
 
-TEST_CASE("graph error: a history of a resource that no pass writes") {
-    FrameGraph graph;
-    add_read(graph, "show", graph.history(graph.texture("image", colour)));
-    CHECK(error_of(graph) ==
-          CompileError{ErrorCode::unwritten_read, "texture 'image' has a history, but no pass writes it"});
-}
-
-TEST_CASE("graph: imported resources and histories may be read before they are written") {
+TEST_CASE("graph: imported resources may be read before they are written") {
     FrameGraph graph;
     add_read(graph, "environment", graph.texture("sky", colour, Lifetime::imported));
     graph.add("exposure", [&](Pass& pass) {
         pass.read(graph.import_value<float>("exposure"));
         pass.side_effect();
     });
-    const TextureHandle blank = graph.texture("image", colour);
-    add_read(graph, "previous", graph.history(blank));
-    (void)add_draw(graph, "draw", blank);
     CHECK(compile(std::move(graph)).errors.empty());
 }
 
-TEST_CASE("graph error: histories of resources that have none, and writes of read-only resources") {
+TEST_CASE("graph error: a write of a value that the host sets") {
     FrameGraph graph;
-    const TextureHandle sky = graph.texture("sky", colour, Lifetime::imported);
-    const TextureHandle image = add_draw(graph, "draw", graph.texture("image", colour));
-    (void)graph.history(sky);
-    (void)graph.history(graph.history(image));
-    (void)add_draw(graph, "rewrite", graph.history(image));
     graph.add("host", [&](Pass& pass) { (void)pass.write(graph.import_value<int>("number")); });
-    const std::vector<CompileError> errors = errors_of(graph);
-    REQUIRE(errors.size() == 4);
-    for (const CompileError& error : errors) {
-        CHECK(error.code == ErrorCode::wrong_usage);
-    }
-    CHECK(errors[0].message == "texture 'sky' has no history: it is imported");
-    CHECK(errors[1].message == "texture 'image' has no history: it is a history itself");
-    CHECK(errors[2].message == "pass 'rewrite' writes the history of texture 'image', which is read only");
-    CHECK(errors[3].message == "pass 'host' writes value 'number', which the host sets");
+    CHECK(error_of(graph) ==
+          CompileError{ErrorCode::wrong_usage, "pass 'host' writes value 'number', which the host sets"});
 }
 
 TEST_CASE("graph error: updates of resources that do not keep the previous frame's content") {
     FrameGraph graph;
-    const TextureHandle remembered = graph.texture("remembered", colour);
-    (void)graph.history(remembered);
     const TextureHandle kept = graph.texture("kept", colour, Lifetime::persistent);
     graph.add("update", [&](Pass& pass) {
         (void)pass.update(graph.texture("transient", colour), Usage::storage);
         (void)pass.update(graph.buffer<int>("imported", 4, Lifetime::imported), Usage::storage);
-        (void)pass.update(remembered, Usage::storage);
         (void)pass.update(pass.update(kept, Usage::storage), Usage::storage);
     });
-    (void)graph.history(kept);
     const std::vector<CompileError> errors = errors_of(graph);
-    REQUIRE(errors.size() == 5);
-    for (std::size_t index = 0; index < 4; ++index) {
-        CHECK(errors[index].code == ErrorCode::wrong_usage);
-    }
+    REQUIRE(errors.size() == 3);
+    for (const CompileError& error : errors) CHECK(error.code == ErrorCode::wrong_usage);
     CHECK(errors[0].message ==
           "pass 'update' updates texture 'transient': "
-          "only version 0 of what is persistent and has no history can be updated");
-    CHECK(errors[4].message == "texture 'kept' has no history: it is updated in place");
+          "only version 0 of what is persistent can be updated");
 }
 
 /// Whether a pass that accesses an imported texture or buffer with `access` is invalid.

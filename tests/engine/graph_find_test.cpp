@@ -45,7 +45,6 @@ TEST_CASE_FIXTURE(Find, "the description of a texture, by its handle") {
     const TextureHandle blank = texture("scene");
     CHECK(graph.desc(blank) == colour);
     CHECK(graph.desc(draw("surfaces", {}, blank)) == colour);
-    CHECK(graph.desc(graph.history(blank)) == colour);
     CHECK_FALSE(graph.desc({}));
     FrameGraph other;
     CHECK_FALSE(graph.desc(other.texture("scene", colour)));
@@ -107,23 +106,17 @@ TEST_CASE_FIXTURE(Find, "the note on a resource, of the type that its producer c
     CHECK(std::any_cast<Unit>(note)->name == "metres");
     CHECK(std::any_cast<Unit>(note)->scale == scale);
 
-    // It stays on later versions, and is not on the history.
+    // It stays on later versions.
     static_cast<void>(draw("draw on", {}, depth));
     CHECK(graph.find_texture("depth")->note != nullptr);
-    const TextureHandle mean = texture("mean");
-    graph.note(mean, 2);
-    const TextureHandle past = graph.history(mean);
-    static_cast<void>(draw("copy", {past}, mean));
-    CHECK(*std::any_cast<int>(graph.find_texture("mean")->note) == 2);
 }
 
-TEST_CASE_FIXTURE(Find, "neither histories nor imports are found") {
+TEST_CASE_FIXTURE(Find, "imports are not found") {
     const TextureHandle mean = texture("mean");
-    const TextureHandle past = graph.history(mean);
     const TextureHandle host = texture("host", Lifetime::imported);
     CHECK_FALSE(graph.find_texture("mean"));
     CHECK_FALSE(graph.find_texture("host"));
-    const TextureHandle newest = draw("add", {past, host}, mean);
+    const TextureHandle newest = draw("add", {host}, mean);
     CHECK(graph.find_texture("mean")->handle == newest);
 }
 }  // namespace

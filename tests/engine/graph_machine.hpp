@@ -23,7 +23,7 @@ inline Content mix(Content hash, Content value) {
 }
 
 /// The result of a pass, from the contents that `content_of(access)` returns for everything it reads or
-/// modifies, including histories, and from `number_of(type)` of the components that it reads.
+/// modifies, and from `number_of(type)` of the components that it reads.
 template <class NumberOf, class ContentOf>
 Content evaluate(const Graph& graph, std::size_t pass, NumberOf number_of, ContentOf content_of) {
     Content hash = mix(1, pass);
@@ -63,9 +63,8 @@ struct Meaning {
 };
 
 /// The contents that the kept passes of a graph give, evaluated in the order of their declaration, whatever
-/// the order in which they run. `before` holds the contents of the histories; null in the first frame.
-inline Meaning meaning(const Graph& graph, const CompiledGraph& compiled, const Host& host,
-                       const Meaning* before = nullptr) {
+/// the order in which they run.
+inline Meaning meaning(const Graph& graph, const CompiledGraph& compiled, const Host& host) {
     std::vector<std::uint32_t> order = compiled.plan().order;
     std::ranges::sort(order);
     std::array<int, number_types> numbers = host.numbers;
@@ -78,7 +77,6 @@ inline Meaning meaning(const Graph& graph, const CompiledGraph& compiled, const 
     for (const std::uint32_t pass : order) {
         const auto number_of = [&](std::size_t type) { return numbers.at(type); };
         const Content hash = evaluate(graph, pass, number_of, [&](const Access& access) {
-            if (access.previous) return before ? before->versions[access.resource].back() : 0;
             return now.versions[access.resource][access.version - (access.write ? 1 : 0)];
         });
         now.passes[pass] = hash;
@@ -135,16 +133,16 @@ class Machine {
             const Resource& resource = graph_->resources[index];
             if (resource.lifetime != Lifetime::imported) continue;
             if (resource.kind == ResourceKind::value) {
-                runtime_.set(ValueHandle<int>{handles_.newest[index]}, static_cast<int>(host.imports[index]));
+                runtime_.set(ValueHandle<int>{handles_[index]}, static_cast<int>(host.imports[index]));
                 continue;
             }
             RecordingBackend::Object& object = backend_.objects.at(imported_[index]);
             if (object.content == host.imports[index] && bound_) continue;
             object.content = host.imports[index];
             if (resource.kind == ResourceKind::texture) {
-                runtime_.bind(TextureHandle{handles_.newest[index]}, imported_[index], {});
+                runtime_.bind(TextureHandle{handles_[index]}, imported_[index], {});
             } else {
-                runtime_.bind(BufferHandle<float>{handles_.newest[index]}, imported_[index], 1);
+                runtime_.bind(BufferHandle<float>{handles_[index]}, imported_[index], 1);
             }
         }
         bound_ = true;
@@ -186,10 +184,7 @@ class Machine {
     void compute(Execution& run, std::size_t pass, const Handles& handles) {
         const Content hash = evaluate(
             *graph_, pass, [&](std::size_t type) { return number(run.world(), type); },
-            [&](const Access& access) -> Content {
-                if (access.previous) return previous(run, access, handles);
-                return read(run, access.resource, handles.newest[access.resource]);
-            });
+            [&](const Access& access) { return read(run, access.resource, handles[access.resource]); });
         for (const ComponentAccess& access : graph_->passes[pass].components) {
             if (!access.write) continue;
             with_type(access.type,
@@ -198,7 +193,7 @@ class Machine {
         for (const Access& access : graph_->passes[pass].accesses) {
             if (access.write) {
                 const Content content = result(graph_->resources[access.resource], access.resource, hash);
-                write(run, access.resource, handles.newest[access.resource],
+                write(run, access.resource, handles[access.resource],
                       content + (pass == sabotaged_ ? 10 : 0));
             }
         }
@@ -213,11 +208,6 @@ class Machine {
         return graph_->resources[resource].kind == ResourceKind::texture
                    ? run.object(TextureHandle{handle})
                    : run.object(BufferHandle<float>{handle});
-    }
-
-    Content previous(Execution& run, const Access& access, const Handles& handles) const {
-        const TextureHandle handle{handles.previous.at(access.resource)};
-        return run.history_valid(handle) ? backend_.objects.at(run.object(handle)).content : 0;
     }
 
     Content read(Execution& run, std::size_t resource, ResourceHandle handle) const {

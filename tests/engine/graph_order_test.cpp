@@ -38,7 +38,7 @@ bool must_precede(const Graph& graph, std::size_t a, std::size_t b) {
     if (a < b && keep_order(graph, a, b)) return true;
     for (const random_graph::Access& first : graph.passes[a].accesses) {
         for (const random_graph::Access& second : graph.passes[b].accesses) {
-            if (a == b || first.resource != second.resource || first.previous || second.previous) continue;
+            if (a == b || first.resource != second.resource) continue;
             const bool hands_over = first.write && !second.write && first.version == second.version;
             const bool reads_before = !first.write && second.write && second.version == first.version + 1;
             const bool writes_before = first.write && second.write && second.version == first.version + 1;
@@ -71,8 +71,7 @@ bool feeds(const Graph& graph, std::size_t writer, std::size_t reader) {
     for (const random_graph::Access& made : graph.passes[writer].accesses) {
         for (const random_graph::Access& used : graph.passes[reader].accesses) {
             if (!made.write || made.resource != used.resource) continue;
-            const bool last = made.version == graph.resources[made.resource].versions;
-            if (used.previous ? last : made.version == used.version - (used.write ? 1 : 0)) return true;
+            if (made.version == used.version - (used.write ? 1 : 0)) return true;
         }
     }
     return false;
@@ -128,21 +127,13 @@ void check_objects(const Graph& graph, const CompiledGraph& compiled) {
             use.last = position;
         }
     }
-    // In the declaration, the number of a history follows that of its resource.
-    std::vector<std::uint32_t> object;
-    std::uint32_t index = 0;
-    for (const random_graph::Resource& resource : graph.resources) {
-        object.push_back(compiled.plan().object[index]);
-        index += resource.has_history ? 2 : 1;
-    }
+    const std::vector<std::uint32_t>& object = compiled.plan().object;
     for (std::size_t a = 0; a < uses.size(); ++a) {
         RC_ASSERT(uses[a].used == (object[a] != detail::none));
         for (std::size_t b = a + 1; b < uses.size(); ++b) {
             if (!uses[a].used || !uses[b].used) continue;
             const random_graph::Resource& one = graph.resources[a];
             const random_graph::Resource& other = graph.resources[b];
-            if (one.has_history) RC_ASSERT(object[b] != object[a] + 1);
-            if (other.has_history) RC_ASSERT(object[a] != object[b] + 1);
             if (object[a] != object[b]) continue;
             RC_ASSERT(one.lifetime == Lifetime::transient);
             RC_ASSERT(other.lifetime == Lifetime::transient);

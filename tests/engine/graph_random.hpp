@@ -2,7 +2,6 @@
 
 #include <cstddef>
 #include <functional>
-#include <map>
 #include <optional>
 #include <string>
 #include <vector>
@@ -34,7 +33,6 @@ struct Resource {
     ResourceKind kind = ResourceKind::texture;
     Lifetime lifetime = Lifetime::transient;
     bool deep = false;  // selects one of two descriptions
-    bool has_history = false;
     std::uint32_t versions = 0;
 };
 
@@ -43,7 +41,6 @@ struct Access {
     std::uint32_t version = 0;  // that is read or written
     Usage usage = Usage::sampled;
     bool write = false;
-    bool previous = false;
 };
 
 struct ComponentAccess {
@@ -93,11 +90,10 @@ inline Usage write_usage(ResourceKind kind) {
 
 struct Options {
     std::size_t passes = 16;
-    bool histories = true;
     bool systems = true;  // passes may write components
 };
 
-inline void add_access(Graph& graph, Pass& pass, const Options& options) {
+inline void add_access(Graph& graph, Pass& pass) {
     Access access;
     access.resource = choose(graph.resources.size() + 2);
     access.write = !one_in(3);
@@ -121,15 +117,9 @@ inline void add_access(Graph& graph, Pass& pass, const Options& options) {
         access.version = ++resource.versions;
         access.usage = gpu ? write_usage(resource.kind) : Usage{};
     } else {
-        const bool texture = resource.kind == ResourceKind::texture;
-        access.previous = options.histories && texture && !imported && resource.versions > 0 && one_in(3);
         if (resource.versions == 0 && !imported) return;
-        access.version = access.previous ? 0 : resource.versions;
+        access.version = resource.versions;
         access.usage = gpu ? read_usage(resource.kind) : Usage{};
-        if (access.previous) {
-            resource.has_history = true;
-            resource.lifetime = Lifetime::persistent;
-        }
     }
     pass.accesses.push_back(access);
 }
@@ -142,7 +132,7 @@ inline Graph make(const Options& options) {
         Pass pass;
         const std::size_t accesses = choose(5);
         for (std::size_t access = 0; access < accesses; ++access) {
-            add_access(graph, pass, options);
+            add_access(graph, pass);
         }
         pass.side_effect = one_in(5);
         for (std::size_t type = 0; type < number_types; ++type) {
@@ -153,11 +143,8 @@ inline Graph make(const Options& options) {
     return graph;
 }
 
-/// Handles of a declared graph, by resource: the newest version, and the history.
-struct Handles {
-    std::vector<ResourceHandle> newest;
-    std::map<std::size_t, ResourceHandle> previous;
-};
+/// Handles of the newest versions of a declared graph's resources.
+using Handles = std::vector<ResourceHandle>;
 
 inline TextureDesc texture_desc(bool deep) {
     return {{32, 32}, Format::rgba16f, TextureShape::flat, 1, deep ? 2U : 1U};
@@ -180,8 +167,7 @@ inline ResourceHandle declare(FrameGraph& frame, const Resource& resource, const
 }
 
 inline void declare(candela::Pass& pass, const Resource& resource, const Access& access, Handles& handles) {
-    ResourceHandle& handle =
-        access.previous ? handles.previous.at(access.resource) : handles.newest[access.resource];
+    ResourceHandle& handle = handles[access.resource];
     const TextureHandle texture{handle};
     const BufferHandle<float> buffer{handle};
     const ValueHandle<int> value{handle};
@@ -206,10 +192,7 @@ FrameGraph declare(const Graph& graph, Handles& handles, MakeRun make_run) {
     FrameGraph frame;
     for (std::size_t index = 0; index < graph.resources.size(); ++index) {
         const Resource& resource = graph.resources[index];
-        const ResourceHandle handle = declare(frame, resource, resource_name(index));
-        handles.newest.push_back(handle);
-        if (!resource.has_history) continue;
-        handles.previous[index] = frame.history(TextureHandle{handle});
+        handles.push_back(declare(frame, resource, resource_name(index)));
     }
     for (std::size_t index = 0; index < graph.passes.size(); ++index) {
         const Pass& pass = graph.passes[index];

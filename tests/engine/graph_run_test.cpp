@@ -255,43 +255,6 @@ TEST_CASE_FIXTURE(GraphFixture,
     CHECK(run() == "show");
 }
 
-TEST_CASE_FIXTURE(GraphFixture,
-                  "graph run: a history holds what was written last, and is invalid before the first write") {
-    std::vector<std::uint64_t> seen;
-    const auto knob = graph.import_value<int>("knob");
-    const TextureHandle blank = texture("accumulated");
-    const TextureHandle previous = graph.history(blank);
-    const TextureHandle mixed = graph.add("mix", [&](Pass& pass) {
-        pass.read(previous, Usage::sampled);
-        pass.read(knob);
-        const TextureHandle written = pass.write(blank, Usage::colour_target);
-        pass.run([&, previous, knob, written](Execution& run) {
-            CHECK(run.object(previous) != run.object(written));
-            seen.push_back(run.history_valid(previous) ? backend.objects.at(run.object(previous)).content
-                                                       : 0);
-            backend.objects.at(run.object(written)).content = static_cast<std::uint64_t>(run.value(knob));
-        });
-        return written;
-    });
-    std::uint64_t shown = 0;
-    graph.add("show", [&](Pass& pass) {
-        pass.read(mixed, Usage::sampled);
-        pass.side_effect();
-        pass.run([&, mixed](Execution& run) { shown = backend.objects.at(run.object(mixed)).content; });
-    });
-    switch_to();
-    for (const int frame : {1, 2}) {
-        runtime.set(knob, frame);
-        CHECK(run() == "mix show");
-    }
-    CHECK(run() == "show");  // a history is not an input
-    CHECK(shown == 2);
-    runtime.set(knob, 3);
-    CHECK(run() == "mix show");
-    CHECK(shown == 3);
-    CHECK(seen == std::vector<std::uint64_t>{0, 1, 2});
-}
-
 TEST_CASE_FIXTURE(GraphFixture, "graph run: the runtime still works after a pass has thrown") {
     bool fail = false;
     const auto knob = graph.import_value<int>("knob");

@@ -261,32 +261,6 @@ TEST_CASE("graph switch: a destroyed runtime leaves no objects") {
     CHECK(backend.misuse.empty());
 }
 
-TEST_CASE("graph switch: histories keep their objects and their content") {
-    RecordingBackend backend;
-    GraphRuntime runtime(backend);
-    const World world;
-    std::vector<std::uint64_t> seen;
-    for (std::uint64_t frame = 1; frame <= 3; ++frame) {
-        FrameGraph graph;
-        graph.add("mix", [&](Pass& pass) {
-            const TextureHandle blank = graph.texture("mixed", colour);
-            const TextureHandle previous = graph.history(blank);
-            pass.read(previous, Usage::sampled);
-            pass.side_effect();
-            const TextureHandle mixed = pass.write(blank, Usage::storage);
-            pass.run([&, frame, previous, mixed](Execution& run) {
-                seen.push_back(run.history_valid(previous) ? backend.objects.at(run.object(previous)).content
-                                                           : 0);
-                backend.objects.at(run.object(mixed)).content = frame;
-            });
-        });
-        runtime.switch_to(compile(std::move(graph)).take());
-        (void)runtime.run(world);
-    }
-    CHECK(seen == std::vector<std::uint64_t>{0, 1, 2});
-    CHECK(backend.created == 2);
-}
-
 TEST_CASE("graph memory: bytes saved by sharing and bytes in the free pool are reported") {
     RecordingBackend backend;
     GraphRuntime runtime(backend);

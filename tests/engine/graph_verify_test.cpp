@@ -202,14 +202,13 @@ TEST_CASE_FIXTURE(VerifyFixture,
 TEST_CASE_FIXTURE(VerifyFixture,
                   "graph verify: passes that remember are not run again and keep their results") {
     const auto knob = graph.import_value<int>("knob");
-    const TextureHandle blank = texture("sum");
-    const TextureHandle previous = graph.history(blank);
+    const TextureHandle blank = texture("sum", Lifetime::persistent);
     const TextureHandle sum = graph.add("accumulate", [&](Pass& pass) {
-        pass.read(previous, Usage::sampled);
+        pass.keeps_state();
         pass.read(knob);
-        const TextureHandle written = pass.write(blank, Usage::storage);
-        pass.run([&, previous, knob, written](Execution& run) {
-            const std::uint64_t before = run.history_valid(previous) ? content(run.object(previous)) : 0;
+        const TextureHandle written = pass.update(blank, Usage::storage);
+        pass.run([&, knob, written](Execution& run) {
+            const std::uint64_t before = run.has_result() ? content(run.object(written)) : 0;
             content(run.object(written)) = before + static_cast<std::uint64_t>(run.value(knob));
         });
         return written;
@@ -336,7 +335,7 @@ TEST_CASE_FIXTURE(GraphFixture,
 TEST_CASE("graph verify: correct random graphs pass, and verifying does not change their results" *
           doctest::test_suite("random")) {
     CHECK(rc::check([] {
-        const Graph graph = random_graph::make({.passes = 20, .histories = false});
+        const Graph graph = random_graph::make({.passes = 20});
         Host host = random_graph::make_host(graph);
         Machine machine(graph);
         machine.runtime().set_verification(true);
@@ -347,22 +346,6 @@ TEST_CASE("graph verify: correct random graphs pass, and verifying does not chan
             machine.check(expected);
             machine.runtime().verify(machine.world());
             machine.check(expected);
-            edit(host);
-        }
-    }));
-}
-
-TEST_CASE("graph verify: correct random graphs with histories pass" * doctest::test_suite("random")) {
-    CHECK(rc::check([] {
-        const Graph graph = random_graph::make({.passes = 20});
-        Host host = random_graph::make_host(graph);
-        Machine machine(graph);
-        machine.runtime().set_verification(true);
-        for (int frame = 0; frame < 8; ++frame) {
-            machine.provide(host);
-            (void)machine.run();
-            machine.runtime().verify(machine.world());
-            machine.check_use();
             edit(host);
         }
     }));
@@ -429,7 +412,7 @@ TEST_CASE("graph verify: the error names the pass with the undeclared input, not
 TEST_CASE("graph verify: in random graphs the error names the pass with the undeclared input" *
           doctest::test_suite("random")) {
     CHECK(rc::check([] {
-        const Graph graph = random_graph::make({.passes = 20, .histories = false});
+        const Graph graph = random_graph::make({.passes = 20});
         const auto order = Machine(graph).runtime().graph()->plan().order;
         if (order.empty()) return;
         const std::size_t culprit = order[random_graph::choose(order.size())];

@@ -86,9 +86,6 @@ class Declarer {
                                                        : graph_.import_value<int>(name("r")));
                 return;
             case 3:
-                declare_derived();
-                return;
-            case 4:
                 declare_in_scope();
                 return;
             default:
@@ -101,13 +98,6 @@ class Declarer {
         const Scope scope = graph_.scope({.name_ending = "'", .key_ending = key});
         for (std::size_t steps = choices_(4); steps > 0 && !choices_.at_end(); --steps) {
             declare_step();
-        }
-    }
-
-    void declare_derived() {
-        const Handle handle = any_handle();
-        if (const auto* const texture = std::get_if<TextureHandle>(&handle)) {
-            handles_.emplace_back(graph_.history(*texture));
         }
     }
 

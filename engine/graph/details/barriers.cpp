@@ -36,8 +36,7 @@ Barrier barrier_for(ResourceKind kind, Usage usage) {
     return Barrier::none;
 }
 
-/// Follows the accesses of every object through repeated frames. A resource and its history swap their two
-/// objects in each frame.
+/// Follows the accesses of every object through repeated frames.
 class Timeline {
  public:
     Timeline(const Declaration& declared, const Plan& plan)
@@ -56,7 +55,6 @@ class Timeline {
                 note(access);
             }
         }
-        ++frame_;
     }
 
  private:
@@ -64,22 +62,16 @@ class Timeline {
     void visit(const Access& access, std::uint32_t position, Need need) {
         const Resource& resource = declared_.resources[access.resource];
         if (resource.storage->kind == ResourceKind::value) return;
-        const std::uint32_t object = object_of(access);
+        const std::uint32_t object = plan_.object[access.resource];
         const Time since = std::max(wrote_[object], access.is_incoherent() ? read_[object] : 0);
         if (since != 0) need(position, now_, barrier_for(resource.storage->kind, access.usage), since);
     }
 
     void note(const Access& access) {
         if (declared_.resources[access.resource].storage->kind == ResourceKind::value) return;
-        if (access.is_incoherent()) wrote_[object_of(access)] = now_;
-        if (!access.write) read_[object_of(access)] = now_;
-    }
-
-    [[nodiscard]] std::uint32_t object_of(const Access& access) const {
-        const Resource& resource = declared_.resources[access.resource];
-        if (resource.history_of != none) return plan_.object[resource.history_of] + (frame_ + 1) % 2;
-        if (resource.history != none) return plan_.object[access.resource] + frame_ % 2;
-        return plan_.object[access.resource];
+        const std::uint32_t object = plan_.object[access.resource];
+        if (access.is_incoherent()) wrote_[object] = now_;
+        if (!access.write) read_[object] = now_;
     }
 
     const Declaration& declared_;
@@ -87,7 +79,6 @@ class Timeline {
     std::vector<Time> wrote_;  // per object: last incoherent write
     std::vector<Time> read_;   // per object: last read
     Time now_ = 0;
-    std::uint32_t frame_ = 0;
 };
 
 /// Plans the barriers of one frame after the other. Each serves all accesses up to the next one.
@@ -140,12 +131,9 @@ void plan_barriers(const Declaration& declared, Plan& plan) {
     plan.barrier.assign(plan.order.size(), Barrier::none);
     if (!any_incoherent(declared, plan.order)) return;
 
-    // The object of a history is overwritten two frames after it was written, so after two frames every
-    // hazard is known.
+    // After a frame every hazard is known, also those between a frame and the next.
     Timeline timeline(declared, plan);
-    const auto ignore = [](std::uint32_t, Time, Barrier, Time) {};
-    timeline.run_frame(ignore);
-    timeline.run_frame(ignore);
+    timeline.run_frame([](std::uint32_t, Time, Barrier, Time) {});
 
     // A frame as if no barrier came before it is valid as every frame. One that follows another needs fewer,
     // where the last barrier of the frame before serves it, too. It is valid as every frame if its own last

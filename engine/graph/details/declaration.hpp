@@ -50,18 +50,15 @@ struct Resource {
     std::string_view key;
     const Storage* storage = nullptr;  // as declared; in the arena
     Lifetime lifetime = Lifetime::transient;
-    bool updated = false;             // see Pass::update
-    std::uint32_t versions = 0;       // number of writes declared so far
-    std::uint32_t reader = none;      // the pass with the last declared read
-    std::uint32_t writer = none;      // the pass with the last declared write
-    std::uint32_t history_of = none;  // for a history: the resource whose history it is
-    std::uint32_t history = none;     // the resource that is this one's history
-    std::uint32_t note = none;        // see FrameGraph::note
+    std::uint32_t versions = 0;   // number of writes declared so far
+    std::uint32_t reader = none;  // the pass with the last declared read
+    std::uint32_t writer = none;  // the pass with the last declared write
+    std::uint32_t note = none;    // see FrameGraph::note
     // Of a buffer; not a part of its storage, which buffers of several types may share.
     std::type_index element = typeid(void);
 
-    /// Whether it is found again by its key in another graph. A history goes with its resource.
-    [[nodiscard]] bool is_kept() const { return lifetime != Lifetime::transient && history_of == none; }
+    /// Whether it is found again by its key in another graph.
+    [[nodiscard]] bool is_kept() const { return lifetime != Lifetime::transient; }
     /// For messages, for example "texture 'depth'".
     [[nodiscard]] std::string title() const { return fmt::format("{} '{}'", to_string(storage->kind), name); }
 };

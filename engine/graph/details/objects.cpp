@@ -37,14 +37,12 @@ class Objects {
 
     void give(std::uint32_t index) {
         const Resource& resource = declared_.resources[index];
-        if (resource.history_of != none) return give(resource.history_of);
         if (plan_.object[index] != none) return;
         if (resource.lifetime == Lifetime::transient) {
             std::uint32_t& free = free_[equal_[index]];
             plan_.object[index] = free != none ? take(free) : create(index);
         } else {
             plan_.object[index] = create(index);
-            if (resource.history != none) plan_.object[resource.history] = create(resource.history);
         }
     }
 

@@ -24,20 +24,16 @@ struct Plan {
     std::vector<std::uint32_t> first_version;  // per resource: its first version id; then the total number
     std::vector<std::uint32_t> writer;         // per version id: the pass that writes it, or none
     std::vector<Span> lifetime;                // per resource
-    // Per resource: its object, or none if it is unused. A history has the object after its resource's.
-    std::vector<std::uint32_t> object;
-    std::vector<std::uint32_t> owner;  // per object: a resource that has its kind and description
-    std::vector<Barrier> barrier;      // per position: what to issue before the pass
+    std::vector<std::uint32_t> object;         // per resource: its object, or none if it is unused
+    std::vector<std::uint32_t> owner;          // per object: a resource that has its kind and description
+    std::vector<Barrier> barrier;              // per position: what to issue before the pass
 
     [[nodiscard]] std::uint32_t version(std::uint32_t resource, std::uint32_t number) const {
         return first_version[resource] + number;
     }
-    /// The id of the version on which an access depends: that which it reads or overwrites; of a history the
-    /// last one.
-    [[nodiscard]] std::uint32_t needed_version(const Declaration& declared, const Access& access) const {
-        const std::uint32_t base = declared.resources[access.resource].history_of;
-        return base == none ? version(access.resource, access.version - (access.write ? 1 : 0))
-                            : version(base, declared.resources[base].versions);
+    /// The id of the version on which an access depends: that which it reads or overwrites.
+    [[nodiscard]] std::uint32_t needed_version(const Access& access) const {
+        return version(access.resource, access.version - (access.write ? 1 : 0));
     }
     /// The resource of a version id.
     [[nodiscard]] std::uint32_t resource(std::uint32_t version_id) const {
@@ -52,7 +48,7 @@ struct Plan {
 // The last steps of compiling, once `plan` has its order and versions.
 
 /// Fills in lifetimes and objects. Transients of the same kind and description share an object if their
-/// lifetimes do not overlap; a resource with a history has two objects; every other resource has its own.
+/// lifetimes do not overlap; every other resource has its own.
 void plan_objects(const Declaration& declared, Plan& plan);
 
 /// Fills in the barriers, for a frame that is repeated in full.

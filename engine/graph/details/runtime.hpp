@@ -69,7 +69,6 @@ struct Runtime {
     [[nodiscard]] Content content_of(const Slot& slot) const;
     [[noreturn]] void report_difference(const Step& step, std::uint32_t version) const;
     void release(std::uint32_t slot);
-    void turn_over(std::uint32_t slot);
     void provide_objects(const CompiledGraph& next, State& made, std::vector<Slot>& unused);
 };
 

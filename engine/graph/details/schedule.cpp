@@ -66,8 +66,7 @@ class Dependencies {
     }
 
     void visit(std::uint32_t pass, const Access& access) {
-        if (declared_.resources[access.resource].history_of != none) return;  // of the last frame
-        const std::uint32_t needed = plan_.needed_version(declared_, access);
+        const std::uint32_t needed = plan_.needed_version(access);
         add(plan_.writer[needed], pass, DependencyKind::result, access.resource);
         std::uint32_t& last = last_reader_[needed];
         if (!access.write) {

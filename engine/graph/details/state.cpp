@@ -30,16 +30,14 @@ Step make_step(const Declaration& declared, const Plan& plan, std::uint32_t posi
         const Resource& resource = declared.resources[access.resource];
         const ResourceKind kind = resource.storage->kind;
         const std::uint32_t slot = plan.object[access.resource];
-        const bool history = resource.history_of != none;
         const bool replaces = access.write && access.version == 1;
         if (access.write) {
-            step.outputs.push_back({plan.version(access.resource, access.version), slot,
-                                    kind == ResourceKind::value, resource.history != none && replaces});
+            step.outputs.push_back(
+                {plan.version(access.resource, access.version), slot, kind == ResourceKind::value});
             step.writes_import |= resource.lifetime == Lifetime::imported;
         }
-        step.keeps_state |= history;
-        const std::uint32_t needed = plan.needed_version(declared, access);
-        if (!history && !replaces && plan.writer[needed] != pass) step.inputs.push_back({needed});
+        const std::uint32_t needed = plan.needed_version(access);
+        if (!replaces && plan.writer[needed] != pass) step.inputs.push_back({needed});
         const bool depth = access.usage == Usage::depth_target;
         if (kind == ResourceKind::texture && (depth || access.usage == Usage::colour_target)) {
             step.targets.push_back({slot, depth, access.write});
@@ -92,8 +90,7 @@ class StateTransfer {
  private:
     [[nodiscard]] static bool alike(const Resource& resource, const Resource& old) {
         return resource.key == old.key && *resource.storage == *old.storage &&
-               resource.lifetime == old.lifetime && (resource.history == none) == (old.history == none) &&
-               (resource.history_of == none) == (old.history_of == none);
+               resource.lifetime == old.lifetime;
     }
 
     /// Matches persistent and imported resources by kind and key. The host must bind imported GPU objects
@@ -123,7 +120,6 @@ class StateTransfer {
             if (resource.storage->kind != ResourceKind::value) return;  // bound anew
         }
         take_slot(plan_.object[index], old_plan_.object[old]);
-        if (resource.history != none) take_slot(plan_.object[index] + 1, old_plan_.object[old] + 1);
     }
 
     void take_slot(std::uint32_t slot, std::uint32_t old_slot) {
@@ -192,10 +188,9 @@ class StateTransfer {
             !alike(resource, old_declared_.resources[b.resource])) {
             return false;
         }
-        if (resource.history_of != none) return true;
         if (a.write && (a.version == 1 || b.version == 1)) return a.version == b.version;
-        const std::uint32_t version = plan_.needed_version(declared_, a);
-        const std::uint32_t old_version = old_plan_.needed_version(old_declared_, b);
+        const std::uint32_t version = plan_.needed_version(a);
+        const std::uint32_t old_version = old_plan_.needed_version(b);
         const bool own = plan_.writer[version] == pass;
         const bool old_own = old_plan_.writer[old_version] == old;
         return own == old_own && (own || old_version_[version] == old_version);
@@ -248,7 +243,6 @@ State make_state(const CompiledGraph& graph) {
         if (imported && plan.object[index] != none) state.imports.push_back(index);
     }
     state.holds.assign(plan.owner.size(), none);
-    state.turned.resize(plan.owner.size());
     state.need.resize(step_count + 1);
     return state;
 }

@@ -21,7 +21,7 @@ struct Slot {
     Storage storage;       // of an import, as bound; `reserve` may have changed the declared one
     bool owned = false;    // created by the runtime; false for imports and for values
     bool changed = false;  // a value: the running pass may have changed the content of its version
-    bool filled = false;   // written since it was created, or bound by the host
+    bool bound = false;    // an import that the host has bound
     ObjectId object = 0;
     Value value;
     std::string key;  // of a persistent texture or buffer; empty for all others
@@ -46,8 +46,7 @@ struct Content {
 struct Output {
     std::uint32_t version;  // id
     std::uint32_t slot;
-    bool value;          // a CPU value, not a texture or buffer
-    bool swaps_history;  // first write to a resource with a history, which is in the next slot: swap the two
+    bool value;  // a CPU value, not a texture or buffer
 };
 
 /// A type of component that a pass reads or writes.
@@ -102,7 +101,6 @@ struct State {
     std::vector<Version> versions;  // per version id
     std::vector<Slot> slots;
     std::vector<std::uint32_t> holds;    // per slot: the version that was written to it last, or none
-    std::vector<std::uint8_t> turned;    // per slot: was swapped with its history in this frame
     std::vector<std::uint32_t> imports;  // resources that the host must provide
     std::vector<std::size_t> components_to_change;  // scratch: types that steps may change in this frame
     std::vector<std::uint8_t> need;  // scratch: per step, and one more for versions that no step makes

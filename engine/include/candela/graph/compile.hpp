@@ -56,7 +56,7 @@ struct CANDELA_API CompileResult {
 /// nearly linear in passes and accesses.
 ///
 /// A pass is kept if it has side effects, if it writes components or an imported resource, or if a kept pass
-/// reads its result, modifies it in place or reads its history. All other passes are culled.
+/// reads its result, or modifies it in place. All other passes are culled.
 ///
 /// The order follows from what passes declare (DependencyKind lists why one runs before another). Where it
 /// is free, it is chosen for few barriers and short lifetimes. With `shuffle`, a seed, it is any other legal

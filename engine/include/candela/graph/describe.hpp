@@ -16,9 +16,8 @@ namespace candela {
 /// One use of a resource by a pass.
 struct DescribedAccess {
     std::size_t resource = 0;      ///< index in GraphDescription::resources
-    std::uint32_t version = 0;     ///< that is read, or that the write produces; 0 of a history
+    std::uint32_t version = 0;     ///< that is read, or that the write produces
     std::optional<Usage> usage{};  ///< none for values
-    bool history = false;          ///< reads the content of the last frame
     bool write = false;
     bool update = false;  ///< a write by Pass::update
 };
@@ -48,8 +47,7 @@ struct DescribedResource {
     BufferDesc buffer{};      ///< of buffers, likewise
     std::uint32_t first = 0;  ///< positions of the first and the last pass that uses it
     std::uint32_t last = 0;
-    std::optional<std::uint32_t> object{};          ///< number of its storage; none for values
-    std::optional<std::uint32_t> history_object{};  ///< number of the storage of its history, if it has one
+    std::optional<std::uint32_t> object{};  ///< number of its storage; none for values
 };
 
 /// Why one pass runs before another.
@@ -59,8 +57,7 @@ enum class DependencyKind : std::uint8_t {
     component_result,     ///< it reads components that the earlier one writes
     component_overwrite,  ///< it writes components that the earlier one reads or writes
     side_effect,          ///< both have side effects, which keep the order of declaration
-    after,                ///< Pass::after
-    history               ///< no order: `to` reads the content that `from` has written in the last frame
+    after                 ///< Pass::after
 };
 [[nodiscard]] CANDELA_API std::string_view to_string(DependencyKind kind);
 
@@ -77,7 +74,7 @@ struct DescribedEdge {
 struct GraphDescription {
     std::vector<DescribedPass> passes;         ///< in the order in which they run
     std::vector<std::string> culled;           ///< names, in the order of declaration
-    std::vector<DescribedResource> resources;  ///< those that the passes use, without histories
+    std::vector<DescribedResource> resources;  ///< those that the passes use
     /// At most one of each kind from one pass to another, ordered by `to`.
     std::vector<DescribedEdge> edges;
 };

@@ -12,7 +12,7 @@ enum class ErrorCode : std::uint8_t {
     foreign_handle,       ///< a null handle, or one of another graph or of another kind
     stale_handle,         ///< a read of a version that another pass has already overwritten
     two_writers,          ///< two passes write one version
-    unwritten_read,       ///< a read before any write, or a history of what no pass writes
+    unwritten_read,       ///< a read before any write
     wrong_usage,          ///< an access that the resource's kind, format or lifetime does not allow
     feedback,             ///< a pass declares a read of the version that it overwrites
     attachment_mismatch,  ///< attachments of different sizes, or two depth targets

@@ -94,7 +94,7 @@ class CANDELA_API Execution {
 
     /// Whether an input (a version that the pass reads or modifies in place) has changed since the pass last
     /// ran. For passes that update only parts of their previous result. Always true without one: see
-    /// has_result. Throws GraphError for anything that is not an input, histories included.
+    /// has_result. Throws GraphError for anything that is not an input.
     [[nodiscard]] bool changed(ResourceHandle read) const;
     /// Whether any of several inputs has.
     [[nodiscard]] bool changed(std::span<const ResourceHandle> reads) const {
@@ -128,10 +128,6 @@ class CANDELA_API Execution {
     /// GraphError otherwise. A description that differs from the current one replaces the object, and its
     /// content is lost.
     void reserve(TextureHandle texture, const TextureDesc& desc);
-
-    /// Whether a history has usable content: it was written, and the texture has the same description now.
-    /// GraphError if the handle is not a history.
-    [[nodiscard]] bool history_valid(TextureHandle history) const;
 
  private:
     friend detail::Runtime;
@@ -214,8 +210,7 @@ class CANDELA_API GraphRuntime {
     ///
     /// `wanted` is asked before each pass that runs, and by passes between parts of their work. If it returns
     /// false, the run ends there, and the record is not `complete`. The next run goes on with the same frame:
-    /// it runs the passes that are left, and those whose inputs have changed meanwhile. Histories are those
-    /// of the last complete frame, also after an exception, but not if `switch_to` follows it.
+    /// it runs the passes that are left, and those whose inputs have changed meanwhile.
     ///
     /// Changes of the world, and another world in its place, are detected by the revisions of the component
     /// pools. With a const world, a graph whose passes change components or entities is a GraphError.
@@ -241,7 +236,7 @@ class CANDELA_API GraphRuntime {
     /// and transients whose object another resource uses later in the frame. Not run again are
     /// - passes with side effects and passes that write imports (they run in every frame),
     /// - passes that change the world,
-    /// - passes that read a history or have declared Pass::keeps_state,
+    /// - passes that have declared Pass::keeps_state,
     /// - passes that would overwrite a result of one of those, and
     /// - passes with an input, components included, that has been overwritten and that only one of those
     ///   could write again.

@@ -99,7 +99,7 @@ class Arena {
 /// passes may not write the same version.
 ///
 /// Version 0 of a persistent resource is its content at the end of the previous frame. `write` discards it,
-/// `update` modifies it in place, and `FrameGraph::history` gives a handle to read it.
+/// `update` modifies it in place.
 ///
 /// No member throws on misuse; `compile` reports the errors.
 class CANDELA_API Pass {
@@ -108,8 +108,8 @@ class CANDELA_API Pass {
     Pass& operator=(const Pass&) = delete;
     ~Pass();
 
-    /// The pass reads this version of the resource, and runs again when it changes (histories excepted). The
-    /// version must be the newest one, and it must have been written by a pass, be imported or be a history.
+    /// The pass reads this version of the resource, and runs again when it changes. The version must be the
+    /// newest one, and it must have been written by a pass or be imported.
     /// With a place, as in `pass.read(lights, {Usage::storage, 2})`, the graph binds it there for the pass.
     void read(TextureHandle texture, Binding binding) {
         declare_read(texture, ResourceKind::texture, binding);
@@ -150,8 +150,8 @@ class CANDELA_API Pass {
     /// depend on. `pass`: its name, with the endings of scopes.
     void after(std::string_view pass);
 
-    /// The pass writes the resource. Returns the handle of the version that it produces. Histories and
-    /// imported values cannot be written.
+    /// The pass writes the resource. Returns the handle of the version that it produces. Imported values
+    /// cannot be written.
     [[nodiscard]] TextureHandle write(TextureHandle texture, Binding binding) {
         return {declare_write(texture, ResourceKind::texture, binding)};
     }
@@ -190,8 +190,7 @@ class CANDELA_API Pass {
     void side_effect();
 
     /// The result depends on what the pass updates: computed again from the same inputs, it may be different.
-    /// Implied for passes that read a history. Only verification uses this: it does not run such passes
-    /// again.
+    /// Only verification uses this: it does not run such passes again.
     void keeps_state();
 
     /// A value of the host's about the pass, such as the workload that its time depends on. The graph does
@@ -318,16 +317,10 @@ class CANDELA_API FrameGraph {
         return {add_value(name, typeid(T), Lifetime::imported)};
     }
 
-    /// A read-only handle for the content that the texture had at the end of the previous frame. Makes the
-    /// texture persistent; imported textures cannot have a history. The history is invalid in the first frame
-    /// and after a resize: ask `Execution::history_valid`. A change of the history does not make its readers
-    /// run again.
-    [[nodiscard]] TextureHandle history(TextureHandle texture);
-
     /// The newest version of the texture with this name, for a pass declared next to read. Only what passes
-    /// have written so far is found, not what they are yet to write, nor histories and what only the host
-    /// writes; of several transients with the name, that declared last. `name` is as in messages and in
-    /// descriptions, with the endings of scopes. O(resources).
+    /// have written so far is found, not what they are yet to write, nor what only the host writes; of
+    /// several transients with the name, that declared last. `name` is as in messages and in descriptions,
+    /// with the endings of scopes. O(resources).
     [[nodiscard]] std::optional<FoundTexture> find_texture(std::string_view name) const;
     /// The same for a buffer.
     [[nodiscard]] std::optional<FoundBuffer> find_buffer(std::string_view name) const;
