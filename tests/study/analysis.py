@@ -1,35 +1,14 @@
-"""Evaluates the measurements: the Pareto front, slopes, the best default."""
+"""Evaluates the measurements: slopes, and tables for people."""
 
 import math
 import statistics
-from collections.abc import Callable, Iterable, Sequence
-from typing import Any, TypeVar
+from collections.abc import Iterable, Sequence
+from typing import Any
 
 from motion import AT_REST
 
 Row = dict[str, Any]  # one point of results.csv
-T = TypeVar("T")
-
 ENDS = ("absorbed", "escaped", "truncated", "roulette")  # of emitted light
-
-# The largest cost of a frame, as a multiple of the yardstick: instant radiosity with 256 VPLs, deferred, unbounded,
-# without visibility. A look-up in a VPL's map costs several times as much as its light, and only maps stop leaks.
-COST_FACTOR = 5.0
-SAME_COST = 1.05  # medians of times vary by this much between runs
-SAME_ERROR = 1.001  # of paths that add up the same light in another order
-YARDSTICK = {
-    "path": "deferred", "vpls": 256, "bounces": 64, "bound": "infinity", "visibility": "none", "lever": "none"
-}
-
-
-def pareto_front(items: Iterable[T], cost: Callable[[T], float], error: Callable[[T], float]) -> list[T]:
-    """The items that no other item beats in both cost and error, cheapest first. Of equal items, the first."""
-    front: list[T] = []
-    for item in sorted(items, key=lambda each: (cost(each), error(each))):
-        if not front or error(item) < error(front[-1]):
-            front.append(item)
-    return front
-
 
 def slope(xs: Sequence[float], ys: Sequence[float]) -> float:
     """The slope of the least-squares line of log y over log x. Needs at least two different x."""
@@ -50,46 +29,9 @@ def slope_above(rows: Sequence[Row], floor: float) -> float | None:
     return slope([row["vpls"] for row in clear], [row["indirect_rel_mse"] for row in clear])
 
 
-def geometric_mean(values: Sequence[float]) -> float:
-    return math.exp(sum(math.log(max(value, 1e-30)) for value in values) / len(values))
-
-
 def select(rows: Iterable[Row], **wanted: Any) -> list[Row]:
     """The rows that were measured successfully and have these values."""
     return [row for row in rows if not row["failed"] and all(row[name] == value for name, value in wanted.items())]
-
-
-def candidates(rows: Sequence[Row]) -> list[Row]:
-    """The configurations measured on every scene of the matrix, each with its error in the scene where that is largest,
-    and with its cost: the geometric mean of its frame times after a camera move, as multiples of the yardstick's time
-    on the same scene. The cost of a frame that recomputes everything is reported, but not used for the choice."""
-    yardsticks = {row["scene"]: row for row in select(rows, suite="matrix", **YARDSTICK)}
-    by_id: dict[str, list[Row]] = {}
-    for row in select(rows, suite="matrix"):
-        if row["scene"] in yardsticks:
-            by_id.setdefault(row["id"], []).append(row)
-    found = []
-    for name, group in by_id.items():
-        if len(group) < len(yardsticks) or group[0]["bounces"] == 0:
-            continue
-        ratios = {
-            time: geometric_mean([row[time] / yardsticks[row["scene"]][time] for row in group])
-            for time in ("frame_ms", "full_ms")
-        }
-        worst = max(group, key=lambda row: row["total_rel_mse"])
-        error = {"error": worst["total_rel_mse"], "worst_scene": worst["scene"]}
-        found.append({"id": name, "cost": ratios["frame_ms"], **ratios, **error, "scenes": len(group)})
-    return found
-
-
-def best_default(rows: Sequence[Row]) -> Row | None:
-    """The configuration with the smallest error in its worst scene, of those that cost at most COST_FACTOR. Of the
-    cheapest with equal error, the first in the matrix, which is the simplest."""
-    within = [each for each in candidates(rows) if each["cost"] <= COST_FACTOR]
-    error = min((each["error"] for each in within), default=0.0)
-    best = [each for each in within if each["error"] <= SAME_ERROR * error]
-    cost = min((each["cost"] for each in best), default=0.0)
-    return next((each for each in best if each["cost"] <= SAME_COST * cost), None)
 
 
 def excess_frames(row: Row, against: Row) -> int:
@@ -113,37 +55,19 @@ def flicker_table(played: Sequence[Row]) -> list[Row]:
     return table
 
 
-def placement_table(rows: Sequence[Row], levers: dict[str, str]) -> list[Row]:
-    """For each scene and number of VPLs, error and bias of the indirect light by placement."""
-    placed = select(rows, suite="placement")
+def scene_table(rows: Sequence[Row]) -> list[Row]:
+    """For each scene: the mean of the indirect light as a multiple of the reference's, errors, the error that the renderer
+    has estimated as a multiple of the measured one, and times as multiples of the Cornell box's: of a frame after a camera
+    move, and of one that recomputes everything."""
+    columns = ("direct_rel_mse", "indirect_rel_mse", "total_rel_mse", "indirect_blotch", "flip", "reference_noise")
+    columns += ("frame_ms_to_beside", "full_ms_to_beside")
     table = []
-    for scene, vpls in dict.fromkeys((row["scene"], row["vpls"]) for row in placed):
-        found = {row["lever"]: row for row in select(placed, scene=scene, vpls=vpls)}
-        if not set(levers.values()) <= found.keys():
-            continue
-        line: Row = {"scene": scene, "vpls": vpls}
-        for name, lever in levers.items():
-            line |= {name: found[lever]["indirect_rel_mse"], f"{name}_bias": found[lever]["indirect_bias"]}
-        line["surfels_to_paths"] = line["surfels"] / line["paths"]
-        table.append({**line, "noise": found[levers["paths"]]["reference_noise"]})
+    for row in select(rows, suite="scenes"):
+        line = {"scene": row["scene"], "mean": 1 + row["indirect_bias"], **{name: row[name] for name in columns}}
+        if "error_estimated" in row:
+            line["estimated"] = row["error_estimated"] / max(row["error_measured"], 1e-30)
+        table.append(line)
     return table
-
-
-def light_table(rows: Sequence[Row], suite: str) -> list[Row]:
-    """For each scene of a suite, errors of direct, indirect and all light."""
-    columns = ("direct_rel_mse", "indirect_rel_mse", "total_rel_mse", "total_bias", "reference_noise")
-    lit = select(rows, suite=suite)
-    return [{"scene": row["scene"], "vpls": row["vpls"], **{name: row[name] for name in columns}} for row in lit]
-
-
-def world_table(rows: Sequence[Row]) -> list[Row]:
-    """For each scene, the mean of the indirect light as a multiple of the reference's, its error, and times as
-    multiples of the Cornell box's: of a frame after a camera move, and of one that recomputes everything."""
-    columns = ("indirect_rel_mse", "reference_noise", "frame_ms_to_beside", "full_ms_to_beside")
-    return [
-        {"scene": row["scene"], "mean": 1 + row["indirect_bias"], **{name: row[name] for name in columns}}
-        for row in select(rows, suite="worlds")
-    ]
 
 
 def world_motion_table(played: Sequence[Row]) -> list[Row]:
@@ -170,25 +94,6 @@ def world_motion_table(played: Sequence[Row]) -> list[Row]:
 def frames_until_settled(errors: Sequence[float]) -> int:
     """The number of frames before the error stays within 1.2 times that of the last frame."""
     return next((i + 1 for i in reversed(range(len(errors))) if errors[i] > 1.2 * errors[-1]), 0)
-
-
-def visibility_costs(rows: Sequence[Row]) -> list[Row]:
-    """For each scene, the error of the indirect light without VPL visibility, with maps and with rays, for the largest
-    number of VPLs that all three were measured with. The reference has the same number of bounces."""
-    table = []
-    plain = select(rows, suite="convergence", path="deferred", bound=1.0)
-    for scene in dict.fromkeys(row["scene"] for row in plain):
-        by_count: dict[int, dict[str, Row]] = {}
-        for row in select(plain, scene=scene):
-            by_count.setdefault(row["vpls"], {})[row["visibility"]] = row
-        full = [count for count, found in by_count.items() if {"none", "maps", "rays"} <= found.keys()]
-        if full:
-            found = by_count[max(full)]
-            errors = {name: found[name]["indirect_rel_mse"] for name in ("none", "maps", "rays")}
-            gain = errors["none"] / errors["maps"]
-            noise = found["none"]["reference_noise"]
-            table.append({"scene": scene, "vpls": max(full), **errors, "none_to_maps": gain, "reference_noise": noise})
-    return table
 
 
 def time_to_error(curve: Sequence[tuple[float, float]], error: float) -> float | None:

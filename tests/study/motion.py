@@ -60,7 +60,7 @@ def motions() -> list[Motion]:
     refined = tuple(Take(f"refined-{vpls}", config(vpls, refined=True)) for vpls in (64, 256))
     exact = Reference(samples=2048, bounces=matrix.DEFAULT_BOUNCES)
     still = [
-        Motion("refinement", f"still-{scene}", matrix.SMALL, exact, STILL_FRAMES, refined) for scene in matrix.HIDDEN
+        Motion("refinement", f"still-{scene}", matrix.SMALL, exact, STILL_FRAMES, refined) for scene in ("cornell", "two-rooms")
     ]
     return moving + still
 

@@ -10,7 +10,7 @@ from matplotlib.axes import Axes
 
 import charts
 from analysis import Row, select
-from charts import BLUE, GREEN, ORANGE, RED, Made
+from charts import BLUE, GREEN, ORANGE, RED
 from motion import VPLS
 
 STYLES = {
@@ -35,11 +35,11 @@ def scripts_panels(error: Axes, flicker: Axes, rows: Sequence[Row]) -> None:
         axes.minorticks_off()
 
 
-def scripts(played: Sequence[Row], out: pathlib.Path) -> Made:
+def scripts(played: Sequence[Row], out: pathlib.Path) -> None:
     rows = select(played, suite="motion")
     names = list(dict.fromkeys(row["scene"] for row in rows))
     if not names:
-        return {}
+        return
     size = (max(3.0 * len(names), 6.0), 6.0)
     figure, grid = plt.subplots(2, len(names), figsize=size, squeeze=False, sharex="col")
     for column, name in enumerate(names):
@@ -48,14 +48,12 @@ def scripts(played: Sequence[Row], out: pathlib.Path) -> Made:
     grid[1][0].set_ylabel("flicker since the previous frame\n(dotted: the reference's own noise)")
     charts.legend_below(figure, grid[0][0], 3)
     charts.save(figure, out, "motion")
-    caption = "Error and flicker of the indirect light over the frames of each script. Below 1e-7 nothing changes."
-    return {"motion": caption}
 
 
-def worlds(played: Sequence[Row], out: pathlib.Path) -> Made:
+def worlds(played: Sequence[Row], out: pathlib.Path) -> None:
     rows = select(played, suite="worlds", id="surfels")
     if not rows:
-        return {}
+        return
     figure, grid = plt.subplots(3, len(rows), figsize=(max(5.0 * len(rows), 6.0), 7.0), squeeze=False, sharex="col")
     for column, row in zip(grid.T, rows):
         times = row["full_ms"][1:]
@@ -72,14 +70,13 @@ def worlds(played: Sequence[Row], out: pathlib.Path) -> Made:
     grid[2][0].set_ylabel("flicker since the previous frame\n(dotted: the reference's own noise)")
     figure.tight_layout()
     charts.save(figure, out, "worlds")
-    return {"worlds": "Time, error and flicker over the frames of each script, with the app's defaults."}
 
 
-def refinement(played: Sequence[Row], out: pathlib.Path) -> Made:
+def refinement(played: Sequence[Row], out: pathlib.Path) -> None:
     rows = select(played, suite="refinement")
     names = list(dict.fromkeys(row["scene"] for row in rows))
     if not names:
-        return {}
+        return
     size = (max(5.4 * len(names), 6.0), 3.7)
     figure, grid = plt.subplots(1, 2 * len(names), figsize=size, sharey=True, squeeze=False)
     for (frames, time), name in zip(grid[0].reshape(-1, 2), names):
@@ -96,10 +93,10 @@ def refinement(played: Sequence[Row], out: pathlib.Path) -> Made:
     grid[0][0].set_ylabel("relMSE of the indirect light")
     charts.legend_below(figure, grid[0][0], 2)
     charts.save(figure, out, "refinement")
-    return {"refinement": "While nothing moves, each frame adds a new set of VPLs to the mean."}
 
 
-def draw(played: Sequence[Row], out: pathlib.Path) -> dict[str, Made]:
-    """Returns the written files by heading."""
-    moving = scripts(played, out) | worlds(played, out)
-    return {"While something moves": moving, "While nothing moves": refinement(played, out)}
+def draw(played: Sequence[Row], out: pathlib.Path) -> None:
+    """Draws all charts for which there are rows."""
+    scripts(played, out)
+    worlds(played, out)
+    refinement(played, out)

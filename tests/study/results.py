@@ -5,17 +5,15 @@ import json
 import math
 import pathlib
 import statistics
-import subprocess
 from typing import Any
 
-import analysis
 import journal
 import machine
 import matrix
 from analysis import Row
 from matrix import Group, Point
 from motion import Motion, Take
-from session import APP, STUDY, Study, pictures_of
+from session import STUDY, Study, pictures_of
 
 FILES = ("picture", "heat")  # columns with files in the build folder
 
@@ -60,16 +58,6 @@ def row_of(group: Group, one: Point, record: journal.Record | None) -> Row:
     return {**row, **{kind: str(pictures_of(group) / line[kind]) for kind in ("picture", "heat")}}
 
 
-def ratio_to_forward(one: Point, records: dict[str, journal.Record | None]) -> Row:
-    """Frame times relative to those of the same configuration on the path `forward` in the same round, so that other
-    load of the machine affects both."""
-    forward = records.get(matrix.point_id({**one.axes, "path": "forward"})) or {"times": []}
-    times = {line["round"]: line["frame_ms"] for line in forward["times"]}
-    mine = (records[one.id] or {"times": []})["times"]
-    ratios = [line["frame_ms"] / times[line["round"]] for line in mine if line["round"] in times]
-    return {"frame_to_forward": statistics.median(ratios)} if ratios else {}
-
-
 def rows_of(study: Study, groups: list[Group]) -> list[Row]:
     study.records = journal.fold(journal.read(study.journal))
     rows = []
@@ -77,7 +65,7 @@ def rows_of(study: Study, groups: list[Group]) -> list[Row]:
         keys = study.keys(group)
         records = {one.id: study.records.get(keys[one.id]) for one in group.points}
         for one in group.points:
-            rows.append({**row_of(group, one, records[one.id]), **ratio_to_forward(one, records)})
+            rows.append(row_of(group, one, records[one.id]))
     return rows
 
 
@@ -147,43 +135,6 @@ def describe(group: Group) -> dict[str, Any]:
     points = {one.id: {"config": one.config, "seeds": one.seeds} for one in group.points}
     shape = {"suite": group.suite, "scene": group.scene, "size": group.size, "rounds": group.rounds}
     return {**shape, "reference": reference, "points": points}
-
-
-def app_default() -> dict[str, Any]:
-    """The app's configuration without flags."""
-    printed = subprocess.run([APP, "--print-config"], check=True, capture_output=True, text=True)
-    return json.loads(printed.stdout)
-
-
-def is_app_default(best: Row, default: dict[str, Any], points: tuple[Point, ...]) -> bool:
-    """Whether the chosen point does not differ from the app's default."""
-    config = next(one.config for one in points if one.id == best["id"])
-    return same(matrix.merged(default, config), default)
-
-
-def same(a: Any, b: Any) -> bool:
-    """Compares configurations; the app stores numbers in single precision."""
-    if isinstance(a, dict) and isinstance(b, dict):
-        return a.keys() == b.keys() and all(same(a[name], b[name]) for name in a)
-    if isinstance(a, float) and isinstance(b, float):
-        return math.isclose(a, b, rel_tol=1e-6)
-    return a == b
-
-
-def choice(rows: list[Row], groups: list[Group]) -> dict[str, Any] | None:
-    """The best default, with the reason in words."""
-    best = analysis.best_default(rows)
-    points = tuple(one for group in groups if group.suite == "matrix" for one in group.points)
-    if best is None:
-        return None
-    agrees = is_app_default(best, app_default(), points)
-    reason = (
-        f"it has the smallest relMSE of the total light in its worst scene, {best['error']:.3g} in"
-        f" {best['worst_scene']}, of the configurations measured in {best['scenes']} scenes whose frame after a camera"
-        f" move takes at most {analysis.COST_FACTOR:g} times as long as with 256 unbounded VPLs, deferred and without"
-        f" visibility; it takes {best['frame_ms']:.2f} times as long, {best['full_ms']:.2f} if everything is recomputed"
-    )
-    return {"id": best["id"], "reason": reason, "is_default_of_app": agrees}
 
 
 def write_results(study: Study, groups: list[Group], rows: list[Row], extra: dict[str, Any]) -> None:

@@ -7,21 +7,18 @@ import journal
 import machine
 import matrix
 import motion
-import progress
 import scenes
 from matrix import Group, Point
 from motion import Motion, Take
 
 BUILD = scenes.ROOT / "build"
 STUDY = BUILD / "release" / "candela-study"
-APP = BUILD / "release" / "candela"
 ANIMATIONS = scenes.ROOT / "sandbox" / "animations"
 SCENES = BUILD / "study" / "scenes"  # scenes that are not shipped
 
 
 def pictures_of(group: Group) -> pathlib.Path:
-    """The folder for the group's pictures and heat maps. Those that the page shows are copied to the folder of pictures
-    in `Study.out`, which is deleted and written again with each page."""
+    """The folder for the group's pictures and heat maps."""
     return BUILD / "study" / "pictures" / group.name.replace("/", "-")
 
 
@@ -32,12 +29,9 @@ class Study:
         self.out = out
         self.journal = out / "journal.jsonl"
         self.records = journal.fold(journal.read(self.journal))
-        self.forecast = progress.Forecast()
-        self.bar = progress.Bar(self.forecast)
         self.machine = machine.machine()
         self.tracer = machine.sources_hash(scenes.ROOT / "sandbox" / "reference")
         self.program = machine.file_hash(STUDY)
-        self.announced = False
 
     def scene(self, group: Group) -> pathlib.Path:
         return scenes.find(group.scene, SCENES)

@@ -1,5 +1,5 @@
 #!/usr/bin/env python3
-"""Speed against accuracy: measures a matrix of configurations against references and writes tables, charts and a page.
+"""Speed against accuracy: measures a matrix of configurations against references and writes tables and charts.
 
 Called by tests/study/run, which builds candela-study first. Results are recorded line by line in journal.jsonl in the
 output folder; a study that is started again measures only what is missing there.
@@ -12,9 +12,6 @@ import sys
 
 import analysis
 import checks
-import growth
-import journal
-import machine
 import matrix
 import motion
 import results
@@ -26,7 +23,7 @@ from motion import Motion
 from measuring import measure
 from session import ANIMATIONS, BUILD, SCENES, STUDY, Study
 
-SUITES = ["matrix", "table", "growth", "gather", "placement", "emitters", "gloss", "worlds", "surfels", "estimate", "motion"]
+SUITES = ["scenes", "gather", "surfels", "motion"]
 GATHER_SCENES = ["cornell", "two-rooms", "glass", "fins", "atrium"]
 PROGRAM_PARTS = ["graph", "shading", "gather", "paths", "moves", "edits", "scale"]
 
@@ -63,16 +60,9 @@ def require_known(parser: argparse.ArgumentParser, flag: str, given: list[str] |
 def planned(quick: bool, parts: list[str] | None, only: list[str] | None) -> list[Group]:
     """All groups to measure, in order."""
     groups: dict[str, list[Group]] = {
-        "matrix": matrix.matrix_groups() + matrix.convergence_groups(),
-        "table": matrix.table_groups(),
-        "growth": matrix.growth_groups(),
+        "scenes": matrix.scene_groups(),
         "gather": matrix.gather_groups(),
-        "placement": matrix.placement_groups(),
-        "emitters": matrix.emitter_groups(),
-        "gloss": matrix.gloss_groups(),
-        "worlds": matrix.world_groups(),
         "surfels": matrix.surfel_groups(),
-        "estimate": matrix.estimate_groups(),
         "motion": [],
     }
     wanted = parts or SUITES
@@ -82,24 +72,10 @@ def planned(quick: bool, parts: list[str] | None, only: list[str] | None) -> lis
 
 def planned_motions(quick: bool, parts: list[str] | None, only: list[str] | None) -> list[Motion]:
     """All scripts to render, in order."""
-    wanted = motion.motions() if not parts or "motion" in parts else []
+    wanted = motion.motions() + motion.world_motions() if not parts or "motion" in parts else []
     wanted += motion.camera_motions() if not parts or "gather" in parts else []
-    wanted += motion.world_motions() if not parts or "worlds" in parts else []
     chosen = motion.quick_motions() if quick else wanted
     return [each for each in chosen if only is None or motion.scene_of(each, ANIMATIONS) in only]
-
-
-def lights_rows(study: Study) -> list[Row]:
-    """Frame times for growing numbers of lights; measures those that are not in the journal."""
-    rows = []
-    for lights in growth.LIGHTS:
-        key = matrix.digest({"lights": lights, "machine": study.machine, "program": study.program})
-        if key not in study.records:
-            print(f"study: timing {lights} lights", file=sys.stderr)
-            study.note({"kind": "lights", "key": key, "rows": growth.measure(STUDY, lights, SCENES)})
-            study.records = journal.fold(journal.read(study.journal))
-        rows += study.records[key]["lights"]["rows"]
-    return rows
 
 
 def run_program_part(part: str, out: pathlib.Path) -> None:
@@ -126,38 +102,31 @@ def run_program_part(part: str, out: pathlib.Path) -> None:
         subprocess.run([STUDY, *command], check=True)
 
 
-def report(study: Study, groups: list[Group], motions: list[Motion], lights: list[Row]) -> None:
-    """Writes tables, charts and the page. Only this function needs Matplotlib."""
+def number(value: object) -> str:
+    return f"{value:.4g}" if isinstance(value, float) else f"{value:,}" if isinstance(value, int) else str(value)
+
+
+def report(study: Study, groups: list[Group], motions: list[Motion]) -> None:
+    """Writes tables and charts, and prints the tables. Only this function needs Matplotlib."""
     import charts
     import motion_charts
-    import page
 
     rows, tracer = results.rows_of(study, groups), results.tracer_rows(study, groups)
-    best = results.choice(rows, groups)
     played = results.motion_rows(study, motions)
-    flicker, costs = analysis.flicker_table(played), analysis.visibility_costs(rows)
-    gathering, camera = analysis.gather_table(rows, tracer), analysis.camera_flicker(played)
-    extra = {"tracer": tracer, "lights": lights, "best": best, "flicker": flicker, "visibility": costs}
-    placement = analysis.placement_table(rows, matrix.PLACEMENTS)
-    emitters, gloss = analysis.light_table(rows, "emitters"), analysis.light_table(rows, "gloss")
-    worlds, walks = analysis.world_table(rows), analysis.world_motion_table(played)
-    extra |= {"worlds": worlds, "walks": walks}
-    extra |= {"placement": placement, "gathering": gathering, "camera": camera, "emitters": emitters, "gloss": gloss}
-    results.write_results(study, groups, rows, {**results.rounded(extra), "motions": results.rounded(played)})
-    made = charts.draw(rows, tracer, lights, best["id"] if best else None, study.out)
-    made |= motion_charts.draw(played, study.out)
-    found = page.Findings(made, best, flicker, costs, gathering, camera, placement, emitters, gloss, worlds,
-                          walks)
-    page.write(study.out, rows, found, study.machine, machine.provenance(STUDY))
-    printed = {"gathering": gathering + camera, "placement": placement, "emitters": emitters, "gloss": gloss}
-    printed |= {"worlds": worlds + walks}
-    for part, lines in printed.items():
+    tables = {
+        "scenes": analysis.scene_table(rows),
+        "gathering": analysis.gather_table(rows, tracer) + analysis.camera_flicker(played),
+        "flicker": analysis.flicker_table(played),
+        "walks": analysis.world_motion_table(played),
+    }
+    extra = results.rounded({"tracer": tracer, **tables, "motions": played})
+    results.write_results(study, groups, rows, extra)
+    charts.draw(rows, tracer, study.out)
+    motion_charts.draw(played, study.out)
+    for name, lines in tables.items():
         for line in lines:
-            print(f"study: {part},", ", ".join(f"{name} {page.number(value)}" for name, value in line.items()))
-    print(f"study: {study.out / 'index.html'}")
-    if best:
-        same = "the app's default" if best["is_default_of_app"] else "NOT the app's default"
-        print(f"study: the best default is {best['id']}, {same}: {best['reason']}")
+            print(f"study: {name},", ", ".join(f"{column} {number(value)}" for column, value in line.items()))
+    print(f"study: {study.out / 'results.json'}")
 
 
 def main() -> int:
@@ -175,8 +144,7 @@ def main() -> int:
         results.write_results(study, groups, rows, {"tracer": tracer, "motions": played})
         return checks.run(rows, tracer, played)
     if measured:
-        whole = given.scenes is None and (not given.part or "growth" in given.part)
-        report(study, groups, motions, lights_rows(study) if whole else [])
+        report(study, groups, motions)
     for part in PROGRAM_PARTS:
         if not given.part or part in given.part:
             run_program_part(part, given.out)
@@ -184,7 +152,7 @@ def main() -> int:
     failed = [row for row in [*rows, *(results.motion_rows(study, motions) if measured else [])] if row["failed"]]
     for row in failed:
         print(f"study: {row['scene']} {row['id']} failed: {row['failed']}", file=sys.stderr)
-    estimates = [row for row in rows if row["suite"] in ("estimate", "worlds")]
+    estimates = [row for row in rows if row["suite"] == "scenes"]
     wrong = checks.report(list(checks.errors_estimated(estimates))) if estimates else 0
     return 1 if failed or wrong else 0
 

@@ -17,29 +17,8 @@ import matrix  # noqa: E402
 import measuring  # noqa: E402
 import motion  # noqa: E402
 import program  # noqa: E402
-import progress  # noqa: E402
 import results  # noqa: E402
 import scenes  # noqa: E402
-
-
-def front_of(pairs: list[tuple[float, float]]) -> list[tuple[float, float]]:
-    return analysis.pareto_front(pairs, lambda pair: pair[0], lambda pair: pair[1])
-
-
-class ParetoFront(unittest.TestCase):
-    def test_excludes_points_that_others_beat(self) -> None:
-        self.assertEqual(front_of([(3, 3), (1, 5), (2, 2), (4, 1), (5, 1)]), [(1, 5), (2, 2), (4, 1)])
-
-    def test_of_equal_costs_keeps_the_smallest_error(self) -> None:
-        self.assertEqual(front_of([(1, 5), (1, 4), (1, 6)]), [(1, 4)])
-
-    def test_agrees_with_a_comparison_of_all_pairs(self) -> None:
-        pairs = [((17 * i) % 101, (i * i * 7) % 97) for i in range(60)]
-        beaten = {b for a in pairs for b in pairs if a != b and a[0] <= b[0] and a[1] <= b[1]}
-        self.assertEqual(front_of(pairs), sorted(set(pairs) - beaten))
-
-    def test_of_no_points_is_empty(self) -> None:
-        self.assertEqual(front_of([]), [])
 
 
 class Slopes(unittest.TestCase):
@@ -92,58 +71,15 @@ class Gathering(unittest.TestCase):
 
 
 def row(scene: str, name: str, cost: float, error: float, **axes: object) -> dict[str, object]:
-    base = {"path": "deferred", "vpls": 256, "bounces": analysis.YARDSTICK["bounces"], "bound": 1.0}
+    base = {"path": "deferred", "vpls": 256, "bounces": matrix.DEFAULT_BOUNCES, "bound": 1.0}
     base |= {"visibility": "maps", "lever": "none"}
     figures = {"frame_ms": cost, "full_ms": cost, "total_rel_mse": error}
     return {"suite": "matrix", "scene": scene, "id": name, "failed": "", **base, **figures, **axes}
 
 
-class BestDefault(unittest.TestCase):
-    def rows(self, scene: str, scale: float) -> list[dict[str, object]]:
-        return [
-            row(scene, "yardstick", 10 * scale, 0.5, bound="infinity", visibility="none"),
-            row(scene, "good", 15 * scale, 0.1),
-            row(scene, "cheap", 5 * scale, 0.4),
-            row(scene, "expensive", 51 * scale, 0.01),
-        ]
-
-    def test_has_the_smallest_error_within_the_cost(self) -> None:
-        best = analysis.best_default(self.rows("a", 1.0) + self.rows("b", 7.0))
-        self.assertEqual(best["id"], "good")
-        self.assertAlmostEqual(best["cost"], 1.5)
-
-    def test_cost_is_that_of_frames_after_a_camera_move(self) -> None:
-        rows = self.rows("a", 1.0)
-        rows[1]["full_ms"] = 51.0
-        self.assertEqual(analysis.best_default(rows)["id"], "good")
-        rows[1]["frame_ms"] = 51.0
-        self.assertEqual(analysis.best_default(rows)["id"], "cheap")
-
-    def test_error_is_that_of_the_worst_scene(self) -> None:
-        rows = self.rows("a", 1.0) + self.rows("b", 1.0)
-        rows[1]["total_rel_mse"] = 0.001
-        rows[5]["total_rel_mse"] = 0.45  # of "good", whose mean is still the smallest
-        best = analysis.best_default(rows)
-        self.assertEqual((best["id"], best["error"], best["worst_scene"]), ("cheap", 0.4, "a"))
-
-    def test_of_equal_errors_is_the_first_of_the_cheapest(self) -> None:
-        equals = [row("a", name, cost, 0.1) for name, cost in (("slow", 14.0), ("simple", 12.4), ("lists", 12.0))]
-        self.assertEqual(analysis.best_default(self.rows("a", 1.0) + equals)["id"], "simple")
-
-    def test_excludes_configurations_not_measured_on_all_scenes(self) -> None:
-        rows = self.rows("a", 1.0) + self.rows("b", 1.0)
-        rows[5]["failed"] = "crashed"
-        self.assertEqual(analysis.best_default(rows)["id"], "cheap")
-
-    def test_of_no_rows_is_none(self) -> None:
-        self.assertIsNone(analysis.best_default([]))
-
-
 class Matrix(unittest.TestCase):
     def groups(self) -> list[matrix.Group]:
-        made = (matrix.matrix_groups, matrix.convergence_groups, matrix.table_groups, matrix.growth_groups)
-        made += (matrix.gather_groups,)
-        return [group for make in made for group in make()] + matrix.quick_groups()
+        return matrix.scene_groups() + matrix.gather_groups() + matrix.surfel_groups() + matrix.quick_groups()
 
     def test_ids_are_distinct_and_valid_file_names(self) -> None:
         for group in self.groups():
@@ -156,33 +92,6 @@ class Matrix(unittest.TestCase):
         names = [group.name for group in self.groups()]
         self.assertEqual(len(names), len(set(names)))
 
-    def test_sweep_has_all_values_of_every_axis(self) -> None:
-        axes = [one.axes for one in matrix.sweep()]
-        for name, values in (
-            ("path", matrix.PATHS),
-            ("vpls", matrix.COUNTS),
-            ("bound", matrix.BOUNDS),
-            ("bounces", matrix.BOUNCES),
-            ("visibility", matrix.VISIBILITIES),
-            ("lever", matrix.LEVERS),
-        ):
-            self.assertEqual({each[name] for each in axes}, set(values))
-
-    def test_short_sweep_contains_the_yardstick(self) -> None:
-        self.assertIn(analysis.YARDSTICK, [one.axes for one in matrix.short_sweep()])
-
-    def test_the_yardstick_has_all_levers_off(self) -> None:
-        config = matrix.blind(256, bound=matrix.UNBOUNDED).config
-        self.assertEqual(config["vpls"]["visibility"], "none")
-        self.assertEqual(config["vpls"]["placement"], "paths")
-        self.assertFalse(config["refinement"]["enabled"])
-
-    def test_shadow_levers_have_memory_for_maps_of_all_lights(self) -> None:
-        # 256 cube maps of six faces of 1,024² texels of four bytes take 6 GiB.
-        for name in ("shadow-maps-half", "shadow-maps-double"):
-            shadows = matrix.blind(256, lever=name).config["shadows"]
-            self.assertGreaterEqual(shadows["budget_mib"] * 2**20, 256 * 6 * shadows["cube_resolution"] ** 2 * 4)
-
     def test_merging_keeps_other_members_of_a_group(self) -> None:
         base = {"vpls": {"count": 1}, "path": "forward"}
         change = {"vpls": {"bounces": 2}, "show": "direct"}
@@ -191,7 +100,7 @@ class Matrix(unittest.TestCase):
         self.assertEqual(base, {"vpls": {"count": 1}, "path": "forward"})
 
     def test_keys_differ_between_points_and_circumstances(self) -> None:
-        group = matrix.table_groups()[0]
+        group = matrix.surfel_groups()[0]
         one, other = group.points[:2]
         key = matrix.key_of(group, one, {"scene": "a"})
         self.assertEqual(key, matrix.key_of(group, one, {"scene": "a"}))
@@ -250,9 +159,9 @@ class Motions(unittest.TestCase):
 
 class Worlds(unittest.TestCase):
     def test_times_are_compared_within_a_round(self) -> None:
-        group = matrix.world_groups()[0]
+        group = matrix.scene_groups()[0]
         one = group.points[0]
-        errors = {"direct": None, "indirect": {"rel_mse": 0.02, "bias": -0.25}, "total": None}
+        errors = {part: {"rel_mse": 0.02, "bias": -0.25, "blotch": 0.01} for part in ("direct", "indirect", "total")}
         line = {"noise": {"indirect": 0.001}, "errors": errors, "flip": 0, "work": {}, "memory": {}}
         line |= {"picture": "a.png", "heat": "b.png"}
 
@@ -264,7 +173,7 @@ class Worlds(unittest.TestCase):
         # Another program makes the second round ten times slower.
         times = [time(1.0, 1.5), time(10.0, 1.4), time(1.1, 1.6), time(1.0, 1.7), time(1.0, 1.3)]
         row = results.row_of(group, one, {"errors": line, "times": times})
-        (found,) = analysis.world_table([row])
+        (found,) = analysis.scene_table([row])
         self.assertAlmostEqual(found["frame_ms_to_beside"], 1.5)
         self.assertAlmostEqual(found["full_ms_to_beside"], 1.5)
         self.assertAlmostEqual(found["mean"], 0.75)
@@ -282,18 +191,6 @@ class Worlds(unittest.TestCase):
         self.assertEqual(analysis.frames_until_settled([0.5, 0.11, 0.3, 0.12, 0.1]), 3)
         self.assertEqual(analysis.frames_until_settled([0.1, 0.1]), 0)
         self.assertEqual(analysis.frames_until_settled([]), 0)
-
-
-class VisibilityCosts(unittest.TestCase):
-    def test_compares_counts_measured_with_all_three_visibilities(self) -> None:
-        def point(visibility: str, vpls: int, error: float) -> dict[str, object]:
-            measured = {"suite": "convergence", "indirect_rel_mse": error, "reference_noise": 0.001}
-            return row("rooms", f"{visibility}-{vpls}", 1.0, 0.0, visibility=visibility, vpls=vpls, **measured)
-
-        rows = [point("none", 256, 2.0), point("maps", 256, 0.2), point("rays", 256, 0.1), point("none", 1024, 2.0)]
-        (line,) = analysis.visibility_costs(rows)
-        self.assertEqual((line["vpls"], line["none"], line["maps"], line["rays"]), (256, 2.0, 0.2, 0.1))
-        self.assertAlmostEqual(line["none_to_maps"], 10.0)
 
 
 class Journal(unittest.TestCase):
@@ -402,32 +299,6 @@ class Program(unittest.TestCase):
 
     def test_after_a_refusal_all_remaining_points_fail(self) -> None:
         self.assertEqual(self.measured("a", "refuse"), {"a": ["fake: refused"], "refuse": ["fake: refused"]})
-
-
-class Forecast(unittest.TestCase):
-    def test_learns_the_time_of_a_unit_from_measurements(self) -> None:
-        forecast = progress.Forecast()
-        forecast.expect("errors", 10.0)
-        forecast.record("errors", 2.0, 6.0)
-        self.assertAlmostEqual(forecast.seconds_left(), 24.0)
-        self.assertAlmostEqual(forecast.share_done(), 0.2)
-
-    def test_is_complete_when_no_work_is_left(self) -> None:
-        forecast = progress.Forecast()
-        forecast.expect("time", 1.0)
-        forecast.forget("time", 0.5)
-        forecast.record("time", 0.5, 3.0)
-        self.assertEqual(forecast.seconds_left(), 0.0)
-        self.assertEqual(forecast.share_done(), 1.0)
-
-
-class Configurations(unittest.TestCase):
-    def test_numbers_that_differ_by_single_precision_are_equal(self) -> None:
-        default = {"vpls": {"geometry_bound": 0.30000001192092896, "count": 256}, "path": "deferred"}
-        self.assertTrue(results.same(matrix.merged(default, {"vpls": {"geometry_bound": 0.3}}), default))
-        self.assertFalse(results.same(matrix.merged(default, {"vpls": {"geometry_bound": 0.31}}), default))
-        self.assertFalse(results.same(matrix.merged(default, {"vpls": {"geometry_bound": "infinity"}}), default))
-        self.assertFalse(results.same(matrix.merged(default, {"vpls": {"count": 255}}), default))
 
 
 class Checks(unittest.TestCase):
