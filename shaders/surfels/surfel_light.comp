@@ -7,6 +7,7 @@
 #include "lights/lights.glsl"
 #include "loop_part.glsl"
 #include "scene/materials.glsl"
+#include "sampling.glsl"
 #include "sky/sky_patch.glsl"
 #include "types.glsl"
 #include "vpls/disc.glsl"
@@ -15,10 +16,13 @@ layout(local_size_x = SURFEL_GROUP) in;
 
 layout(std430, binding = BINDING_CELL_POINTS) readonly restrict buffer Points { CellPoint cell_points[]; };
 layout(std430, binding = BINDING_DIRECT_POINTS) restrict buffer DirectPoints { DirectPoint direct_points[]; };
+layout(std430, binding = BINDING_LAST_POINTS) readonly restrict buffer LastPoints { DirectPoint last_points[]; };
+layout(std430, binding = BINDING_KEPT_POINTS) readonly restrict buffer KeptPoints { uint kept_points[]; };  // by surfel
 layout(std430, binding = BINDING_SURFELS) readonly restrict buffer Surfels { Surfel surfels[]; };
 
 uniform uint first_row;  // of work groups, in this dispatch: see ComputeSteps::run_rows
 uniform uint point_count;
+uniform bool keeps;  // light at points whose cells are among kept_points
 uniform uint light_count;
 uniform float ray_offset;    // metres; rays start above the surface and end before the light, which may lie on another
 uniform uint surfel_count;
@@ -42,6 +46,12 @@ vec3 sunk_position(CellPoint point, float height) {
     return point.position - max(sqrt(point.area) - height, 0.0) * point.normal;
 }
 
+// A number of a point, consecutive within a cell, which does not depend on what other surfels there are.
+uint number_of(Surfel own, uint id) {
+    uvec3 bits = floatBitsToUint(own.position);
+    return hash_combine(hash_combine(hash(bits.x), bits.y), bits.z) + id - own.first_point;
+}
+
 // A place in a point's part of its cell: the point itself, or somewhere on the way to another point of the cell, which is
 // in the same plane, so that it is on the surface as well. As far away as in a disc of the part's area.
 vec3 place_in_part(CellPoint point, uint id, uint i) {
@@ -51,7 +61,7 @@ vec3 place_in_part(CellPoint point, uint id, uint i) {
     float distance2 = dot(apart, apart);
     bool in_plane = dot(point.normal, other.normal) > 0.999 && abs(dot(point.normal, apart)) < ray_offset;
     if (!in_plane || distance2 == 0.0) return point.position;
-    float u = fract((float(i) + float(id % 64u) / 64.0) * 0.618034);
+    float u = fract((float(i) + float(number_of(own, id) % 64u) / 64.0) * 0.618034);
     return point.position + min(sqrt(u * point.area / (PI * distance2)), 0.5) * apart;
 }
 
@@ -95,7 +105,7 @@ Share share_of(uint id, Surfel own, uint sources) {
     uint least = (sources + MOST_POINT_RAYS - 1u) / MOST_POINT_RAYS;
     uint shares = clamp(own.point_count, least, max(MOST_CELL_SHARES, least));
     bool covers_all = shares <= own.point_count;
-    uint first = (covers_all ? id - own.first_point : id) % shares;
+    uint first = (covers_all ? id - own.first_point : number_of(own, id)) % shares;
     // How many points of the cell have the same share.
     float same = float((own.point_count - 1u - first) / shares + 1u);
     return Share(first, shares, covers_all ? float(own.point_count) / same : float(shares));
@@ -168,6 +178,11 @@ void main() {
     uint id = (first_row + gl_WorkGroupID.y) * SURFEL_GROUP + gl_LocalInvocationID.x;
     if (id >= point_count) return;
     CellPoint point = cell_points[id];
+    uint kept = keeps ? kept_points[point.surfel] : NO_SURFEL;
+    if (kept != NO_SURFEL) {
+        if (part_first == 0u) direct_points[id] = last_points[kept + id - surfels[point.surfel].first_point];
+        return;
+    }
     Material material = materials[point.material];
     bool is_emission_uv = has_second_uv(point.material, MATERIAL_SECOND_UV_EMISSIVE);
     vec4 texture_colour = is_emission_uv ? material.base_colour : colour_at(material, point.uv);

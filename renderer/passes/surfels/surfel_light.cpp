@@ -4,7 +4,9 @@
 #include <cmath>
 #include <cstddef>
 #include <optional>
+#include <span>
 #include <string>
+#include <utility>
 #include <vector>
 
 #include <fmt/format.h>
@@ -17,10 +19,45 @@
 namespace candela {
 namespace {
 
-/// Light of the real lights at the points of the cells, and summed over each cell.
-struct DirectLight {
-    BufferHandle<gpu::DirectPoint> points;
-    BufferHandle<gpu::CellLight> cells;
+/// Cells whose light is known, by surfel. The light of a cell stays while nothing but the choice of surfels
+/// changes.
+struct LitCells {
+    std::vector<std::uint64_t> ids;           // Surfels::ids
+    std::vector<std::uint32_t> first_points;  // of the cell, among all points
+    std::uint32_t emitters = 0;               // the last ones
+    bool operator==(const LitCells&) const = default;
+
+    [[nodiscard]] std::span<const std::uint64_t> emitting() const { return std::span(ids).last(emitters); }
+};
+
+LitCells cells_of(const Execution& run, const Surfels& surfels) {
+    LitCells cells{run.value(surfels.ids), {}, run.value(surfels.counts).emitters};
+    cells.first_points.resize(cells.ids.size());
+    const std::vector<CellPlace>& points = run.value(surfels.cell_places);
+    for (std::size_t i = points.size(); i-- > 0;) {
+        cells.first_points[points[i].surfel] = static_cast<std::uint32_t>(i);
+    }
+    return cells;
+}
+
+/// By surfel: the first point of its cell before, NO_SURFEL for new ones. Light of emitting cells reaches all
+/// others, so that nothing stays if these change.
+std::vector<std::uint32_t> kept_points(const LitCells& before, const LitCells& now) {
+    if (!std::ranges::equal(before.emitting(), now.emitting())) {
+        return std::vector<std::uint32_t>(now.ids.size(), NO_SURFEL);
+    }
+    std::vector<std::uint32_t> kept = kept_surfels(before.ids, now.ids).last;
+    for (std::uint32_t& surfel : kept) {
+        if (surfel != NO_SURFEL) surfel = before.first_points[surfel];
+    }
+    return kept;
+}
+
+/// Resources by which the light at points stays from frame to frame.
+struct KeptLight {
+    ValueHandle<LitCells> cells;
+    BufferHandle<gpu::DirectPoint> last_points;
+    BufferHandle<std::uint32_t> kept;  // kept_points
 };
 
 /// Numbers of surfels and of the points of their cells.
@@ -117,13 +154,38 @@ std::vector<std::string> read_sky(Pass& pass, const std::optional<SkyPatches>& s
     return {"SKY"};
 }
 
-DirectLight add_direct_light(FrameGraph& graph, Gpu& gpu, const Tracing& tracing,
-                             const SurfelVisibility& visibility, const SurfelSources& sources) {
+/// What the light at points depends on besides surfels.
+std::vector<ResourceHandle> other_inputs(const Tracing& tracing, const SurfelSources& sources) {
+    std::vector<ResourceHandle> inputs{tracing.nodes,        tracing.triangles, tracing.materials,
+                                       tracing.texels,       tracing.metrics,   sources.lights.table,
+                                       sources.lights.buffer};
+    if (sources.sky) inputs.insert(inputs.end(), {sources.sky->count, sources.sky->patches});
+    return inputs;
+}
+
+/// Brings what is known of the points' light to where the shader finds it. Returns whether any of it stays.
+bool keep_light(const Gpu& gpu, Execution& run, const KeptLight& light, BufferHandle<gpu::DirectPoint> points,
+                LitCells now, const std::vector<ResourceHandle>& others) {
+    const LitCells* const before = run.previous(light.cells);
+    const bool keeps = run.has_result() && before != nullptr && !run.changed(others);
+    if (keeps) {
+        upload<std::uint32_t>(gpu, run, light.kept, kept_points(*before, now));
+        copy_content(gpu, run, points, light.last_points, run.count(points));
+    }
+    run.set(light.cells, std::move(now));
+    return keeps;
+}
+
+BufferHandle<gpu::DirectPoint> add_direct_light(FrameGraph& graph, Gpu& gpu, const Tracing& tracing,
+                                                const SurfelVisibility& visibility,
+                                                const SurfelSources& sources) {
     const Surfels& surfels = visibility.surfels;
     const SceneLights& lights = sources.lights;
     return graph.add("surfel-light", [&](Pass& pass) {
         pass.read(surfels.counts);
         pass.read(surfels.point_count);
+        pass.read(surfels.ids);
+        pass.read(surfels.cell_places);
         pass.read(surfels.surfels, {Usage::storage, BINDING_SURFELS});
         pass.read(surfels.points, {Usage::storage, BINDING_CELL_POINTS});
         pass.read(lights.table);
@@ -132,16 +194,19 @@ DirectLight add_direct_light(FrameGraph& graph, Gpu& gpu, const Tracing& tracing
         std::vector<std::string> defined = read_sky(pass, sources.sky);
         if (sources.emitters) defined.emplace_back("EMITTERS");
         const gl::Program& lighter = gpu.program({"surfels/surfel_light.comp"}, defined);
-        const gl::Program& adder = gpu.program({"surfels/surfel_cells.comp"});
-        const DirectLight out{
-            .points = pass.write(growing_buffer<gpu::DirectPoint>(graph, "directly lit points"),
-                                 {Usage::storage, BINDING_DIRECT_POINTS}),
-            .cells = pass.write(growing_buffer<gpu::CellLight>(graph, "directly lit cells"),
-                                {Usage::storage, BINDING_CELL_LIGHT})};
-        pass.run([=, &gpu, &lighter, &adder, sky = sources.sky](Execution& run) {
+        const auto out = pass.update(growing_buffer<gpu::DirectPoint>(graph, "directly lit points"),
+                                     {Usage::storage, BINDING_DIRECT_POINTS});
+        const KeptLight kept{
+            .cells = pass.update(graph.value<LitCells>("known lit cells")),
+            .last_points = pass.write(growing_buffer<gpu::DirectPoint>(graph, "last directly lit points"),
+                                      {Usage::copy, BINDING_LAST_POINTS}),
+            .kept = pass.write(growing_buffer<std::uint32_t>(graph, "kept points"),
+                               {Usage::copy, BINDING_KEPT_POINTS})};
+        pass.run([=, &gpu, &lighter, sky = sources.sky](Execution& run) {
             const auto [count, points] = numbers_of(run, surfels);
-            run.reserve(out.points, points);
-            run.reserve(out.cells, count);
+            const bool keeps =
+                keep_light(gpu, run, kept, out, cells_of(run, surfels), other_inputs(tracing, sources));
+            run.reserve(out, points);
             if (count == 0) return;
             const std::uint32_t emitters = run.value(surfels.counts).emitters;
             const SceneMetrics& metrics = run.value(tracing.metrics);
@@ -151,13 +216,13 @@ DirectLight add_direct_light(FrameGraph& graph, Gpu& gpu, const Tracing& tracing
             const std::uint32_t patches = sky ? run.value(sky->count) : 0;
             const gl::Uniforms uniforms{
                 {"point_count", points}, {"light_count", light_count}, {"ray_offset", metrics.ray_offset()},
-                {"surfel_count", count}, {"emitting_count", emitters}, {"sky_patch_count", patches}};
+                {"surfel_count", count}, {"emitting_count", emitters}, {"sky_patch_count", patches},
+                {"keeps", keeps}};
             ComputeSteps steps(gpu);
             for (const gl::Uniforms& part :
                  loop_parts(gpu.device().limits(), light_count, iterations_a_ray / 2)) {
                 steps.run_rows(run, lighter, {1, groups(points, SURFEL_GROUP)}, uniforms + part);
             }
-            steps.run(adder, {groups(count, SURFEL_GROUP)}, count_uniforms(count));
         });
         return out;
     });
@@ -229,13 +294,13 @@ gl::Uniforms share_uniforms(ShownLight shown) {
 Vpls add_surfel_light(FrameGraph& graph, Gpu& gpu, const Tracing& tracing, const SurfelVisibility& visibility,
                       const SurfelSources& sources, std::uint32_t bounces, ShownLight shown) {
     const Surfels& surfels = visibility.surfels;
-    const DirectLight direct = add_direct_light(graph, gpu, tracing, visibility, sources);
+    const auto direct = add_direct_light(graph, gpu, tracing, visibility, sources);
     return graph.add("surfel-bounce", [&](Pass& pass) {
         pass.read(surfels.counts);
         pass.read(surfels.point_count);
         pass.read(surfels.surfels, {Usage::storage, BINDING_SURFELS});
         pass.read(surfels.points, {Usage::storage, BINDING_CELL_POINTS});
-        pass.read(direct.points, {Usage::storage, BINDING_DIRECT_POINTS});
+        pass.read(direct, {Usage::storage, BINDING_DIRECT_POINTS});
         pass.read(visibility.form_factors, {Usage::storage, BINDING_FORM_FACTORS});
         pass.read(visibility.rows, {Usage::storage, BINDING_SURFEL_ROWS});
         if (sources.sky) pass.read(sources.sky->count);
@@ -244,8 +309,9 @@ Vpls add_surfel_light(FrameGraph& graph, Gpu& gpu, const Tracing& tracing, const
         const BouncePrograms programs = bounce_programs(gpu, writer_variant(sources));
         const MeanStep mean_step{sources.balanced ? &gpu.program({"surfels/surfel_mean.comp"}) : nullptr};
         const GroupStep group_step = read_groups(gpu, pass, surfels);
-        [[maybe_unused]] const auto lit_cells =
-            pass.write(direct.cells, {Usage::storage, BINDING_CELL_LIGHT});
+        const gl::Program& adder = gpu.program({"surfels/surfel_cells.comp"});
+        const auto cells = pass.write(growing_buffer<gpu::CellLight>(graph, "lit cells"),
+                                      {Usage::storage, BINDING_CELL_LIGHT});
         const auto bounced =
             pass.write(growing_buffer<glm::vec4>(graph, "bounced light"), {Usage::storage, BINDING_BOUNCE});
         const LitSurfels lit = write_lit_surfels(graph, pass, surfels, sources, shown);
@@ -253,7 +319,7 @@ Vpls add_surfel_light(FrameGraph& graph, Gpu& gpu, const Tracing& tracing, const
                        .flux = pass.write(growing_buffer<gpu::FluxAccount>(graph, "flux"),
                                           {Usage::storage, BINDING_FLUX_ACCOUNT}),
                        .records = lit};
-        pass.run([=, &gpu, sky = sources.sky](Execution& run) {
+        pass.run([=, &gpu, &adder, sky = sources.sky](Execution& run) {
             VplCounts counts = run.value(surfels.counts);
             counts.sky_patches = sky ? run.value(sky->count) : 0;
             counts.accounts = std::min(counts.all_surfels(),
@@ -261,6 +327,7 @@ Vpls add_surfel_light(FrameGraph& graph, Gpu& gpu, const Tracing& tracing, const
             counts.directions = lit.balanced && counts.surfels > 0 ? COVER_DIRECTIONS : 0;
             run.set(out.counts, counts);
             const auto [count, points] = numbers_of(run, surfels);
+            run.reserve(cells, count);
             run.reserve(bounced, 3 * count);
             run.reserve(lit.surfels, count + counts.groups + (lit.balanced ? 1 : 0));
             run.reserve(lit.points, points);
@@ -268,6 +335,7 @@ Vpls add_surfel_light(FrameGraph& graph, Gpu& gpu, const Tracing& tracing, const
             if (count == 0) return;
             run.reserve(out.flux, counts.accounts);
             ComputeSteps steps(gpu);
+            steps.run(adder, {groups(count, SURFEL_GROUP)}, count_uniforms(count));
             gpu.gl().BindBuffer(GL_DISPATCH_INDIRECT_BUFFER, run.object(out.flux));
             (programs.at_once ? gather_at_once : gather_one_by_one)(steps, programs, count, bounces);
             mean_step.run(steps, counts, shown);
