@@ -1,5 +1,5 @@
-// The program in graph.md, word for word: CMakeLists.txt extracts it. It looks at what was drawn before it is
-// shown, and closes the window after a few frames.
+// The program in engine/README.md, word for word: CMakeLists.txt extracts it. It looks at what was drawn
+// before it is shown, and closes the window after a few frames.
 
 // clang-format off
 #include <epoxy/gl.h>  // before GLFW, which would include another header of GL

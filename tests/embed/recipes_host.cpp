@@ -1,5 +1,5 @@
-// The pieces of code in README.md and recipes.md, word for word: CMakeLists.txt extracts them. Each runs in a
-// block of its own, one after the other.
+// The pieces of code in recipes.md, word for word: CMakeLists.txt extracts them. Each runs in a block of its
+// own, one after the other.
 
 #include <epoxy/gl.h>
 
@@ -16,11 +16,6 @@
 namespace {
 
 constexpr glm::uvec2 picture_size{64, 48};
-
-struct Bloom {
-    float strength = 0.5F;
-    bool operator==(const Bloom&) const = default;
-};
 
 struct Fade {
     float share = 0.5F;
@@ -66,6 +61,7 @@ void run_recipes(candela::Renderer& renderer, const candela::gl::GetProc& get_pr
     const GLuint framebuffer = picture.framebuffer;
     const candela::Target target{framebuffer, size};
     const std::vector<glm::vec3> particles{{0, 0.5F, 0}, {1, 0.5F, 0}};
+    const auto host_objects = [] { return std::map<int, glm::vec3>{{7, {3, 0, 0}}, {9, {4, 0, 0}}}; };
     using host::draw_particles;
     using host::particle_program;
     using host::Sparks;
@@ -79,10 +75,6 @@ void run_recipes(candela::Renderer& renderer, const candela::gl::GetProc& get_pr
     GLuint no_vertices = 0;
     glCreateVertexArrays(1, &no_vertices);
     const GLuint program = host::make_program(host::whole_viewport, copy_fragment);
-    const auto set_uniforms = [](GLuint of_program, const candela::WorldReader& of) {
-        for (const auto& [entity, bloom] : of.view<Bloom>())
-            glProgramUniform1f(of_program, 0, bloom.strength);
-    };
     const auto draw_faded = [=](const candela::WorldReader& of) {
         float factor = 1.0F;
         for (const auto& [entity, fade] : of.view<Fade>()) factor = fade.share;
