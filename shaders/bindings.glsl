@@ -164,7 +164,7 @@
 #define MOST_SKY_SUNS 4
 #define MOST_SKY_PATCHES 256  // in the uniform block of sky_patch.glsl
 // Distances of a pixel from a group of surfels, in widths of the group: nearer, the surfels are summed one by one; farther,
-// the group as one; between them, both in part. See theory.md, "Groups of surfels".
+// the group as one; between them, both in part. See README.md, "Groups of surfels".
 #define GROUP_NEAR 2.5
 #define GROUP_FAR 3.0
 #define MOST_COLUMNS 2048   // largest number of surfels that one surfel gathers from

@@ -1,5 +1,5 @@
 // Low-discrepancy points with random access: a point depends on its index and seed only. Owen-scrambled pairs of Sobol
-// dimensions (Burley, "Practical Hash-based Owen Scrambling", JCGT 2020). See theory.md, "Points".
+// dimensions (Burley, "Practical Hash-based Owen Scrambling", JCGT 2020). See README.md, "Points".
 #include "maths.glsl"
 
 uint hash(uint x) {
@@ -56,7 +56,7 @@ vec3 direction_off(vec3 axis, float x, float u) {
     return sin_theta * (cos(phi) * tangent + sin(phi) * bitangent) + (1.0 - x) * axis;
 }
 
-// Unit direction in the hemisphere of `normal` with density cos θ / π, for `u` in [0, 1)². See theory.md, "Directions".
+// Unit direction in the hemisphere of `normal` with density cos θ / π, for `u` in [0, 1)². See README.md, "Directions".
 vec3 cosine_direction(vec3 normal, vec2 u) {
     return direction_off(normal, 1.0 - sqrt(1.0 - u.x), u.y);
 }

@@ -1,5 +1,5 @@
 // The light that a surface has gathered from VPLs, for its face normal, and (DIRECTED) how it is distributed over
-// directions, so that normal textures show in it. See theory.md, "Direction of gathered light".
+// directions, so that normal textures show in it. See README.md, "Direction of gathered light".
 #include "surfaces/surface.glsl"
 
 struct Gathered {

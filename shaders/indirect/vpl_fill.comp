@@ -1,6 +1,6 @@
 // Gathers VPLs for the listed pixels, for which reconstruction found too few classes. Such a pixel sums one in one_in
 // VPLs; neighbouring pixels sum different ones. The result is the mean of both estimates, weighted by the number of
-// VPLs behind each: theory.md, "Pixels without enough neighbours". One invocation per listed pixel.
+// VPLs behind each: README.md, "Pixels without enough neighbours". One invocation per listed pixel.
 #include "bindings.glsl"
 #include "loop_part.glsl"
 #include "surfaces/visible_surface.glsl"

@@ -21,7 +21,7 @@ const float CREASE_SLACK = 16.0;  // ray offsets: a receiver this little behind 
 
 // 1 above the surface that a VPL lies on, 0 beyond its edges. Falls off linearly beyond an edge, over a quarter of the
 // distance to it. `aside`: metres from the VPL, in its plane. `ahead`: distance towards a straight edge over the
-// distance to it. See theory.md, "Edges of a VPL's surface".
+// distance to it. See README.md, "Edges of a VPL's surface".
 float share_on_surface(TracedVpl vpl, vec3 aside) {
     float ahead = dot(max(aside * vpl.edges_up, -aside * vpl.edges_down), vec3(1.0));
     return clamp(5.0 - 4.0 * ahead, 0.0, 1.0);
@@ -29,7 +29,7 @@ float share_on_surface(TracedVpl vpl, vec3 aside) {
 
 // Geometry term cos θ cos θ' / r² between the surface and a VPL (Keller, "Instant Radiosity", 1997). It is at most 4/3
 // of 1/R², as the VPL is treated as a disc of radius R (disc.glsl). Beyond an edge of the VPL's surface there is no
-// crease, and the disc does not sink. Irradiance is flux/π times the term. See theory.md, "Bound of the geometry term".
+// crease, and the disc does not sink. Irradiance is flux/π times the term. See README.md, "Bound of the geometry term".
 float geometry_term(TracedVpl vpl, Surface surface) {
     vec3 to_vpl = vpl.position - surface.position;
     float height = -dot(vpl.normal, to_vpl);
@@ -181,7 +181,7 @@ void add_patch(inout Gathered gathered, SkyPatch sky_patch, Surface surface) {
 
 #include "sampling.glsl"
 
-// Adds π times the irradiance from a direction, if a surface is there: theory.md, "Shared items". The directions are those
+// Adds π times the irradiance from a direction, if a surface is there: README.md, "Shared items". The directions are those
 // that follow the cosine. In this order the even ones (vpl_fill.comp), and the share of each class of pixels, are spread
 // over the hemisphere.
 void add_direction(inout Gathered gathered, uint direction, Surface surface) {

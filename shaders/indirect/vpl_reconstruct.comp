@@ -1,7 +1,7 @@
 // Reconstructs the irradiance from all VPLs out of the gathered estimates, each of which covers one class's share:
 // first along rows, then (COLUMNS) along columns of that result. Along a line the classes repeat every `interleave`
 // pixels. Each class counts once, interpolated linearly between its two nearest pixels, as far as they lie on the same
-// surface as the pixel. Alpha: the share of the classes that were found. See theory.md, "Interpolation between
+// surface as the pixel. Alpha: the share of the classes that were found. See README.md, "Interpolation between
 // classes". One invocation per pixel.
 #include "bindings.glsl"
 #include "surfaces/visible_surface.glsl"

@@ -74,7 +74,7 @@ bool outside_cone(Bounds box, vec3 apex, vec3 axis, float cos_angle) {
 }
 
 // Whether the light's range may overlap the cell. Conservative: never false where the light's irradiance in the cell is
-// not zero. See theory.md, "Light culling".
+// not zero. See README.md, "Light culling".
 bool reaches(Light light, Cell cell) {
     if (isinf(light.range)) return true;
     vec3 centre = (view.view_from_world * vec4(light.position, 1.0)).xyz;

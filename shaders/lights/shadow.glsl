@@ -1,5 +1,5 @@
 // Shadows of lights. The shadow map tells where nothing stands between a surface and the light, whatever the size of what
-// might, and elsewhere a ray decides: theory.md, "Shadow maps". Depth is reversed: 1 at the near plane, 0 at infinity or
+// might, and elsewhere a ray decides: README.md, "Shadow maps". Depth is reversed: 1 at the near plane, 0 at infinity or
 // at the map's far end. SHADOW_RAYS: shadows are enabled.
 #include "bindings.glsl"
 #include "lights/shadow_plane.glsl"
@@ -29,7 +29,7 @@ const float UNKNOWN = 0.5;
 
 // What the map shows of `origin`, which lies in a plane that faces the light. Nothing is in the way if in none of the four
 // texels around it a triangle is nearer than that plane: 1. It is hidden if in all of them a triangle is nearer that covers
-// all four: 0. See theory.md, "Shadow maps".
+// all four: 0. See README.md, "Shadow maps".
 float mapped_visibility(Shadow shadow, bool cube, vec3 origin, vec3 normal, vec3 light_position) {
     float resolution = float(cube ? textureSize(shadow_cubes, 0).x : textureSize(shadow_maps, 0).x);
     vec4 clip = shadow.from_world * vec4(origin, 1.0);

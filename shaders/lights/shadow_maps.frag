@@ -1,5 +1,5 @@
 // Draws a triangle into a texel of a shadow map if it comes within a texel of the centre, along each axis: the depth of its
-// plane at the centre, and whether it hides all that is within a texel. See theory.md, "Shadow maps".
+// plane at the centre, and whether it hides all that is within a texel. See README.md, "Shadow maps".
 #include "lights/shadow_plane.glsl"
 
 uniform float texel;  // width in clip space

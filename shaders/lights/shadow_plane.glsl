@@ -14,7 +14,7 @@ bvec4 covers_all(vec4 stored) { return notEqual(floatBitsToUint(stored) & 1u, uv
 vec3 row(mat3 m, int i) { return vec3(m[0][i], m[1][i], m[2][i]); }
 vec3 row(mat4 m, int i) { return vec3(m[0][i], m[1][i], m[2][i]); }
 
-// Change of a plane's depth per step in x and y of the map's clip space: theory.md, "Shadow maps". `height`: of a point of
+// Change of a plane's depth per step in x and y of the map's clip space: README.md, "Shadow maps". `height`: of a point of
 // the plane above the light, along the normal. `from_world`, `depth_scale`: see Shadow.
 vec2 plane_slope(mat4 from_world, float depth_scale, vec3 normal, float height) {
     vec3 x = row(from_world, 0);

@@ -11,7 +11,7 @@ float cone_falloff(Light light, vec3 direction) {
 }
 
 // 1 - cos of the angle to the axis, distributed like the intensity, for `u` in [0, 1): the inverse of the cumulative flux
-// of the inner cone and then of the quadratic falloff. See theory.md, "Directions".
+// of the inner cone and then of the quadratic falloff. See README.md, "Directions".
 float sample_spot(Light light, float u) {
     float ramp = 1.0 / light.shape.x;
     float outer = light.shape.y * ramp;

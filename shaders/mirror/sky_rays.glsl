@@ -1,5 +1,5 @@
 // The sky in the mirror direction. A part of the rays of rough surfaces goes to bright parts of the sky that they reflect,
-// drawn from a tree over the directions of its picture (renderer/passes/sky/sky_tree.hpp). See theory.md, "Bright skies in
+// drawn from a tree over the directions of its picture (renderer/passes/sky/sky_tree.hpp). See README.md, "Bright skies in
 // rough surfaces".
 #include "bindings.glsl"
 #include "mirror/glossy_surface.glsl"

@@ -13,7 +13,7 @@ struct PatchLight {
 };
 
 // The cosine is taken to be evenly distributed over [c - h, c + h], c being that of the patch's middle and h its half
-// width. See theory.md, "Light of the sky".
+// width. See README.md, "Light of the sky".
 PatchLight light_of_patch(SkyPatch sky_patch, vec3 normal) {
     float middle = dot(sky_patch.direction, normal);
     float half_width = sqrt(sky_patch.half_width2);

@@ -61,7 +61,7 @@ PackedGloss pack_gloss(vec4 mirror, vec2 gloss) {
 }
 
 // Roughness of a surface whose normals differ within a pixel. `slope`: root of the mean square of their slopes against the
-// normal that the pixel has. See theory.md, "Bumps that are too small to be seen".
+// normal that the pixel has. See README.md, "Bumps that are too small to be seen".
 float widened_roughness(float roughness, float slope) {
     if (slope == 0.0) return roughness;
     float alpha = roughness * roughness;

@@ -2,7 +2,7 @@
 
 // The plane with this normal through a point in normalised device coordinates, in clip space: the dot product with
 // (x, y, z, 1), in normalised device coordinates, is the distance from it in widths of a pixel at that depth. See
-// theory.md, "Same surface".
+// README.md, "Same surface".
 vec4 tangent_plane(vec3 normal, vec3 point) {
     mat4 m = view.world_from_clip;
     vec4 w = vec4(m[0].w, m[1].w, m[2].w, m[3].w);

@@ -48,7 +48,7 @@ vec3 bounces_to_add() {
 }
 
 // Once the light of each bounce is that of the one before times a factor, all further bounces together are a multiple of
-// the last one. What is left afterwards is the error, which further bounces gather. See theory.md, "Bounces to come".
+// the last one. What is left afterwards is the error, which further bounces gather. See README.md, "Bounces to come".
 // `bounce`: number of the last one that was gathered, at least 3.
 void add_bounces_to_come(uint bounce) {
     uint lane = gl_LocalInvocationIndex;
@@ -120,7 +120,7 @@ void write_account() {
 }
 
 // Sums up where the flux of the lights went: absorbed, escaped, or left after the last bounce; and decides whether to go on.
-// The sizes of the dispatches for another bounce are in the account. See theory.md, "Flux account of surfels". `bounce`:
+// The sizes of the dispatches for another bounce are in the account. See README.md, "Flux account of surfels". `bounce`:
 // number of the last one that was gathered; 1: none yet.
 void account_for(uint bounce) {
     uint lane = gl_LocalInvocationIndex;

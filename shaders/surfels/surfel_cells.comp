@@ -45,7 +45,7 @@ void main() {
         vec3 mean = first / weight;
         cell.centre += mean;
         // h² = 6 · variance + area / points: a square of side h has variance h² / 6, and each point represents an equal
-        // share of the cell. The disc has the square's area. See theory.md, "Width of a lit cell".
+        // share of the cell. The disc has the square's area. See README.md, "Width of a lit cell".
         float side2 = 6.0 * max(second / weight - dot(mean, mean), 0.0) + surfel.area / float(surfel.point_count);
         cell.radius2 = min(side2, surfel.area) / PI;
     }

@@ -1,6 +1,6 @@
 // Adds up the light of the surfels of each group: the VPL that far pixels see in their place. It is written as the record
 // of a surfel, behind those of all surfels: its points are the group's surfels, its depth map is that of the surfel in its
-// middle, and its flux comes from the disc of the same mean and variance. See theory.md, "Groups of surfels". One
+// middle, and its flux comes from the disc of the same mean and variance. See README.md, "Groups of surfels". One
 // invocation per group.
 #include "bindings.glsl"
 #include "maths.glsl"
@@ -31,7 +31,7 @@ void main() {
     float second = 0.0;
     for (uint i = group.first; i < group.first + group.count; ++i) {
         LitSurfel surfel = lit_surfels[i];
-        float w = dot(abs(surfel.flux), vec3(1.0));  // less than 0: theory.md, "Shared items"
+        float w = dot(abs(surfel.flux), vec3(1.0));  // less than 0: README.md, "Shared items"
         vec3 off = surfel.centre - sum.position;
         sum.flux += surfel.flux;
         sum.area += surfel.area;

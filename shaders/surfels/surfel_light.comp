@@ -41,7 +41,7 @@ const uint SUN_RAYS = 8u;
 const uint FEW_LIGHTS = 16u;
 
 // Where a cell point receives the light of a source `height` above its plane: sunk behind its surface, so that the source
-// is at least as high as the point's part of the surface is wide. See theory.md, "Lights close to a surface".
+// is at least as high as the point's part of the surface is wide. See README.md, "Lights close to a surface".
 vec3 sunk_position(CellPoint point, float height) {
     return point.position - max(sqrt(point.area) - height, 0.0) * point.normal;
 }

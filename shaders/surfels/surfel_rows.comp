@@ -1,7 +1,7 @@
 // Balances the form factors F. Each surfel i gets a scale dᵢ such that its row, Σ dᵢ Fᵢⱼ dⱼ over j, adds up to its
 // covered share cᵢ, from surfel_cover.comp. Other surfels then gather from it the share cᵢ of the flux that it sends
 // out. One round computes dᵢ ← √(dᵢ cᵢ / Σ Fᵢⱼ dⱼ) and halves the logarithm of the remaining error (after Sinkhorn and
-// Knopp, 1967). See theory.md, "Balanced form factors". One invocation per surfel.
+// Knopp, 1967). See README.md, "Scaled form factors". One invocation per surfel.
 #include "surfels/surfel.glsl"
 
 layout(local_size_x = SURFEL_GROUP) in;

@@ -1,7 +1,7 @@
 // Turns surfels into VPLs: each has the total flux that its cell emits and reflects, and the position and width of the
 // part of the cell that it comes from. Also writes the flux of each cell point. With EMITTERS, the last surfels are on
 // surfaces that emit light. With BALANCED, surfels that stand for several items have the light of their own one only, and
-// all have only what is more than the mean of the others: theory.md, "Shared items". One invocation per surfel.
+// all have only what is more than the mean of the others: README.md, "Shared items". One invocation per surfel.
 #include "surfels/surfel.glsl"
 
 layout(local_size_x = SURFEL_GROUP) in;
@@ -44,7 +44,7 @@ LitSurfel lit_surfel(Surfel surfel, CellLight cell, vec3 spread, vec3 flux) {
         vec3 apart = cell.centre - surfel.position;
         centre += share * apart;
         // The direct light comes from one disc, the indirect light from another. One disc replaces both, with the mean
-        // and the variance of the flux of both. See theory.md, "Width of a lit cell".
+        // and the variance of the flux of both. See README.md, "Width of a lit cell".
         float between = share * (1.0 - share) * dot(apart, apart) * 6.0 / PI;
         radius2 = min(mix(radius2, cell.radius2, share) + between, radius2);
     }

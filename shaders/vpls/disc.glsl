@@ -6,7 +6,7 @@ float tilt_of(vec3 normal, vec3 from_normal) { return 1.0 - max(-dot(normal, fro
 // π / A times the form factor of a disc of area A = π R², seen from a receiver `height` above the disc's plane;
 // `to_disc` is the vector from the receiver to the disc's centre, r its length. With q = `tilt`, the disc is seen
 // as if it had sunk by q R² / √(R² + r²) below its surface, and the term is cos θ cos θ' / (r'² + (1 - q) R²), r' being
-// the distance to the sunk centre. Exact on the axis of a facing disc; at most 4/3 of 1/R². See theory.md, "The sinking
+// the distance to the sunk centre. Exact on the axis of a facing disc; at most 4/3 of 1/R². See README.md, "The sinking
 // disc".
 float sinking_disc_term(vec3 to_disc, float height, vec3 normal, float radius2, float tilt, vec3 from_normal) {
     float depth = tilt * radius2 * inversesqrt(radius2 + max(dot(to_disc, to_disc), 1e-12));

@@ -2,7 +2,7 @@
 // from a VPL (MapFrame): the hemisphere above its surface in the hemi-octahedral map, or, if the VPL is far from the
 // focus (SURFEL_MAP_FOCI), a perspective picture of the focus, in which a texel is much smaller there. `map` is
 // Surfel::map, or the index of a traced VPL. Depth is the inverse of the
-// octahedral distance |x| + |y| + z or of z, so that it is linear over a plane (theory.md, "Planes in VPL maps"): 1 at
+// octahedral distance |x| + |y| + z or of z, so that it is linear over a plane (README.md, "Planes in VPL maps"): 1 at
 // VplConstants::map_near and nearer, 0 where there is no surface. With its slope a texel knows the plane that it sees.
 #include "maths.glsl"
 #include "types.glsl"
@@ -25,7 +25,7 @@ VplTile vpl_tile(uint map) {
 vec3 vpl_map_origin(vec3 position, vec3 normal) { return position + vpl_constants.ray_offset * normal; }
 
 // How a map sees the world. A direction in its space meets the surface bend (|x| + |y|) + z = 1 in the point that the map
-// stores: the octahedron, or the plane z = 1 (theory.md, "Planes in VPL maps").
+// stores: the octahedron, or the plane z = 1 (README.md, "Planes in VPL maps").
 struct MapFrame {
     mat3 map_from_world;
     float bend;   // 1: hemi-octahedral, around +z (Cigolle et al. 2014); 0: perspective, along +z

@@ -1,6 +1,6 @@
 // Finds the near edges of the surface that a VPL lies on: receivers beyond an edge do not stand on that surface, so
 // there is no crease between them. Runs whenever VPLs are written, since the surroundings of a VPL may have moved even
-// if it has not. One invocation per VPL and direction. See theory.md, "Edges of a VPL's surface".
+// if it has not. One invocation per VPL and direction. See README.md, "Edges of a VPL's surface".
 #include "bindings.glsl"
 #include "maths.glsl"
 #include "scene/bvh.glsl"

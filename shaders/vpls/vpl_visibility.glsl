@@ -132,7 +132,7 @@ const float OUTSIDE = 1.0;  // visibility beyond the field of view of a perspect
 
 // Share of the VPL's light that reaches the surface, in [0, 1], by the four texels around its direction. What a texel sees
 // hides the surface if the surface is behind its plane, and it before the plane of the surface. `map`: see vpl_atlas.glsl.
-// See theory.md, "Planes in VPL maps".
+// See README.md, "Planes in VPL maps".
 float visibility_of_vpl(uint map, VplPose pose, Surface surface) {
     MapFrame frame = pose.frame;
     vec3 facing = frame.map_from_world * face_normal(surface);

@@ -222,7 +222,7 @@ TEST_CASE_FIXTURE(RenderFixture, "bumps too small to be seen: the mean over all 
             error_of_flat += std::pow(lit(texel({128, 128, 255})) - expected, 2.0);
             all += expected * expected;
         }
-        // A lobe of GGX is not the mean of those of many normals. By theory.md, the integral of the
+        // A lobe of GGX is not the mean of those of many normals. By shaders/README.md, the integral of the
         // square of the error is 0.018 of that of the square, and without wider lobes 0.38. Here places
         // near the peak count for more, where the error is largest: 1.24² - 1 at the peak itself, at
         // most.

@@ -38,8 +38,8 @@ SceneTriangles square_triangles() {
     return scene;
 }
 
-/// disc_term of shaders/vpls/disc.glsl in double precision, for a receiver with one normal. See theory.md,
-/// "The sinking disc".
+/// disc_term of shaders/vpls/disc.glsl in double precision, for a receiver with one normal. See
+/// shaders/README.md, "The sinking disc".
 double disc_term(const glm::dvec3& centre, const glm::dvec3& normal, double radius2, const glm::dvec3& from,
                  const glm::dvec3& facing) {
     const glm::dvec3 to_disc = centre - from;
@@ -247,8 +247,8 @@ TEST_CASE_FIXTURE(GroupTests, "near and far from groups a pixel receives the lig
                 const double u = std::clamp((widths - GROUP_NEAR) / (GROUP_FAR - GROUP_NEAR), 0.0, 1.0);
                 const double whole = group.point_count == 1 ? 0.0 : u * u * (3.0 - 2.0 * u);
                 exact += each;
-                // theory.md, "Groups of surfels": at GROUP_NEAR the error is at most 6.5 % of the light
-                // that a facing receiver straight ahead has, and it falls with the square of the
+                // shaders/README.md, "Groups of surfels": at GROUP_NEAR the error is at most 6.5 % of the
+                // light that a facing receiver straight ahead has, and it falls with the square of the
                 // distance.
                 bound += whole * 0.065 * std::pow(GROUP_NEAR / widths, 2.0) *
                          static_cast<double>(group.flux.r) /

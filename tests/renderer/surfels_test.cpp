@@ -328,8 +328,8 @@ TEST_CASE_FIXTURE(SurfelTests, "a light close to a wall lights a room with all o
             configure(configuration);
             static_cast<void>(render(scene, {8, 6}));
             // A light of 1 cd emits 4π lm. Half of them fall on the wall: the sum over its points has a
-            // standard deviation of 6 % (theory.md, "Lights close to a surface"). They are some 0.08 m
-            // apart; from so high, 8 % of that half would miss a wall that is 1 m wide on all sides.
+            // standard deviation of 6 % (shaders/README.md, "Lights close to a surface"). They are some 0.08
+            // m apart; from so high, 8 % of that half would miss a wall that is 1 m wide on all sides.
             const double emitted = renderer.report().vpls->flux.emitted.r;
             CHECK(emitted == doctest::Approx(4.0 * pi).epsilon(0.5 * (3.0 * 0.06 + 0.08)));
         }

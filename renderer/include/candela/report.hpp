@@ -64,7 +64,7 @@ struct VplReport {
     EnergyAccount flux;
     /// Estimate of the relMSE of the VPLs' light in the view, with its visibility but without interleaving
     /// and refinement; none unless RenderView::estimate_error asked for it. From the difference to another
-    /// set of as many VPLs: shaders/theory.md, "Error of a set of VPLs". 0.01 is an error of a tenth.
+    /// set of as many VPLs: shaders/README.md, "Error of a set of VPLs". 0.01 is an error of a tenth.
     std::optional<double> estimated_error{};
 };
 

@@ -14,7 +14,7 @@ namespace candela {
 namespace {
 
 /// Mean squared difference of two sets at a pixel over the mean squared error of one. It would be 2 if they
-/// were independent and without bias; measured as theory.md describes.
+/// were independent and without bias; measured as shaders/README.md describes.
 constexpr double difference_over_error = 2.5;
 
 VplSamples add_samples(FrameGraph& graph, Gpu& gpu, std::string_view name, std::string_view result,

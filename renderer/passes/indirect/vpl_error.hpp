@@ -28,7 +28,7 @@ struct VplErrorSamples {
                                             const VplLight& shown, const VplLight& other,
                                             const ViewData& view);
 
-/// The relMSE of `shown`: VplReport::estimated_error. See theory.md, "Error of a set of VPLs".
+/// The relMSE of `shown`: VplReport::estimated_error. See shaders/README.md, "Error of a set of VPLs".
 [[nodiscard]] double estimated_error(std::span<const glm::vec4> shown, std::span<const glm::vec4> other);
 
 }  // namespace candela

@@ -69,7 +69,7 @@ struct ShadowMaps {
 /// of the scene as seen from every light that has a map (shadow mapping: Williams, "Casting Curved Shadows on
 /// Curved Surfaces", 1978). A point light has the six faces of a cube, or one map if the scene is far away, a
 /// spot light the cone or the same as a point light, a directional light the rectangle that the scene covers.
-/// The maps are conservative, and where one does not decide, shading traces a ray: shaders/theory.md, "Shadow
+/// The maps are conservative, and where one does not decide, shading traces a ray: shaders/README.md, "Shadow
 /// maps". Both sides of all triangles are drawn that may be in a map, but no blended surfaces. Views whose
 /// content is unchanged are kept: if a light moves, only its views are drawn; if a mesh moves, all are; if
 /// the camera moves, none. Depends on meshes, materials, lights and the scene's metrics. `scale`: see

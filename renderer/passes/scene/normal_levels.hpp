@@ -15,7 +15,7 @@ using NormalLevel = std::vector<glm::u8vec4>;
 /// the one before, rounded down. The first one has the texels of the image. Each texel of another one has the
 /// mean direction of the normals under it. Alpha is the root of the mean square of their slopes against that
 /// direction, from 0 to 1, which is 0 in the first level; what the image's rounding to 8 bits explains is
-/// left out. See theory.md, "Bumps that are too small to be seen".
+/// left out. See shaders/README.md, "Bumps that are too small to be seen".
 [[nodiscard]] std::vector<NormalLevel> normal_levels(const Image& image);
 
 }  // namespace candela

@@ -26,7 +26,7 @@ struct LitSurfels {
     std::optional<SkyPatches> sky;       ///< none: the world has no sky, or its light is not shown
     std::uint32_t group_size = 1;  ///< surfels_a_group; if above 1, records of groups follow the surfels'
     /// One surfel stands for several objects. The surfels' light is what exceeds a mean, and VPLs that are
-    /// directions add the mean: shaders/theory.md, "Shared items". The record behind all has the mean.
+    /// directions add the mean: shaders/README.md, "Shared items". The record behind all has the mean.
     bool balanced = false;
 };
 
