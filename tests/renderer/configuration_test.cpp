@@ -67,7 +67,7 @@ std::string values_of(const Setting& setting, const T& value) {
     }
 }
 
-/// The row of a setting in the README.
+/// The row of a setting in sandbox/README.md.
 template <class T>
 std::string row_of(const Setting& setting, const T& value) {
     std::string pointer = fmt::format("/{}", setting.path);

@@ -1,12 +1,17 @@
 #include "sandbox/editing/key_bindings.hpp"
 
 #include <GLFW/glfw3.h>
+#include <doctest/doctest.h>
+#include <fmt/format.h>
 
+#include <fstream>
 #include <set>
+#include <sstream>
+#include <string>
 #include <string_view>
 #include <utility>
 
-#include <doctest/doctest.h>
+#include "sandbox/files/shipped_file.hpp"
 
 namespace candela::sandbox {
 
@@ -33,6 +38,20 @@ TEST_CASE("every action has a key and a help text") {
     for (int action = 0; action <= static_cast<int>(Action::quit); ++action) {
         CHECK_MESSAGE(seen.contains(static_cast<Action>(action)), action);
     }
+}
+
+TEST_CASE("the README lists all keys, and what the mouse does") {
+    std::string rows = "| keys | |\n|---|---|\n";
+    for (const KeyBinding& binding : key_bindings()) {
+        if (!binding.help.empty()) rows += fmt::format("| {} | {} |\n", binding.keys, binding.help);
+    }
+    rows += "\n| mouse | |\n|---|---|\n";
+    for (const MouseHelp& mouse : mouse_help())
+        rows += fmt::format("| {} | {} |\n", mouse.buttons, mouse.help);
+    std::stringstream text;
+    text << std::ifstream(shipped_file("", "README.md")).rdbuf();
+    INFO("this must stand there:\n" << rows);
+    CHECK(text.str().find("\n\n" + rows + "\n") != std::string::npos);
 }
 
 TEST_CASE("modifiers must match, locks do not matter") {
