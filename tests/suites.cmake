@@ -1,0 +1,23 @@
+# Runs after PROGRAM was built: writes to LIST, for CTest, one test for each of its suites, or for each of SUITES if there
+# are any, commas between them. ARGUMENTS are the program's, PROPERTIES those of the tests.
+if(NOT SUITES)
+    set(SUITES "*")
+endif()
+execute_process(COMMAND ${PROGRAM} --list-test-suites "--test-suite=${SUITES}" --no-skip=true
+    OUTPUT_VARIABLE listed COMMAND_ERROR_IS_FATAL ANY)
+string(REGEX REPLACE "(^|\n)(\\[doctest\\]|===)[^\n]*" "" listed "${listed}")
+string(REGEX MATCHALL "[^\n]+" suites "${listed}")
+set(content "")
+foreach(suite IN LISTS suites)
+    set(test "[==[${LABEL}/${suite}]==]")
+    string(APPEND content "add_test(${test} [==[${PROGRAM}]==] [==[--test-suite=${suite}]==]")
+    foreach(argument IN LISTS ARGUMENTS)
+        string(APPEND content " [==[${argument}]==]")
+    endforeach()
+    string(APPEND content ")\nset_tests_properties(${test} PROPERTIES")
+    foreach(property IN LISTS PROPERTIES)
+        string(APPEND content " [==[${property}]==]")
+    endforeach()
+    string(APPEND content ")\n")
+endforeach()
+file(WRITE ${LIST} "${content}")
