@@ -255,6 +255,30 @@ TEST_CASE_FIXTURE(GraphFixture,
     CHECK(run() == "show");
 }
 
+TEST_CASE_FIXTURE(GraphFixture,
+                  "graph run: a value whose elements have no == counts as changed when it is set") {
+    struct Plain {
+        int value = 0;
+    };
+    const auto list = graph.import_value<std::vector<Plain>>("list");
+    const auto size = graph.add("count", [&](Pass& pass) {
+        pass.read(list);
+        const auto written = pass.write(graph.value<std::size_t>("size"));
+        pass.run([=](Execution& run) { run.set(written, run.value(list).size()); });
+        return written;
+    });
+    graph.add("print", [&](Pass& pass) {
+        pass.read(size);
+        pass.side_effect();
+    });
+    switch_to();
+    for (int times = 0; times < 2; ++times) {
+        runtime.set(list, {{1}});
+        CHECK(run() == "count print");
+        CHECK(run() == "print");
+    }
+}
+
 TEST_CASE_FIXTURE(GraphFixture, "graph run: the runtime still works after a pass has thrown") {
     bool fail = false;
     const auto knob = graph.import_value<int>("knob");

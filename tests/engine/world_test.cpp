@@ -763,6 +763,21 @@ void step(const Edit& edit, World& world, Model& model) {
     }
 }
 
+TEST_CASE("world: containers of elements without == are components that always count as changed") {
+    struct Plain {
+        int value = 0;
+    };
+    static_assert(!Comparable<std::vector<Plain>> && !Comparable<std::map<int, Plain>>);
+    static_assert(!Comparable<std::pair<int, Plain>> && !Comparable<std::tuple<Plain, int>>);
+    static_assert(Comparable<std::vector<std::string>> && Comparable<std::map<int, float>>);
+    World world;
+    const Entity entity = world.create();
+    world.set(entity, std::vector<Plain>{{1}});
+    const Tick before = world.revision<std::vector<Plain>>();
+    world.set(entity, std::vector<Plain>{{1}});
+    CHECK(world.revision<std::vector<Plain>>() != before);
+}
+
 TEST_CASE("world: after random edits it has the same content as a plain map" *
           doctest::test_suite("random")) {
     using Raw = std::tuple<std::uint8_t, std::uint8_t, std::uint8_t>;

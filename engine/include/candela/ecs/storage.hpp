@@ -9,6 +9,7 @@
 #include <type_traits>
 #include <utility>
 
+#include <candela/ecs/comparable.hpp>
 #include <candela/ecs/entity_table.hpp>
 #include <candela/ecs/pool.hpp>
 #include <candela/ecs/view.hpp>
@@ -88,7 +89,7 @@ class Storage {
     /// See World::edit.
     template <std::invocable<C&> F>
     void edit(Entity entity, F&& change) requires(!std::is_const_v<C>) {
-        if constexpr (std::equality_comparable<C> || std::is_trivially_copyable_v<C>) {
+        if constexpr (Comparable<C> || std::is_trivially_copyable_v<C>) {
             C value = get(entity);
             std::forward<F>(change)(value);
             set(entity, std::move(value));
@@ -111,7 +112,7 @@ class Storage {
     }
 
     [[nodiscard]] static bool equal(const Value& a, const Value& b) {
-        if constexpr (std::equality_comparable<Value>) {
+        if constexpr (Comparable<Value>) {
             return a == b;
         } else {
             return false;

@@ -1,7 +1,6 @@
 #pragma once
 
 #include <algorithm>
-#include <concepts>
 #include <cstdint>
 #include <functional>
 #include <memory>
@@ -10,6 +9,7 @@
 #include <utility>
 
 #include <candela/api.hpp>
+#include <candela/ecs/comparable.hpp>
 #include <candela/ecs/world.hpp>
 #include <candela/ecs/world_writer.hpp>
 #include <candela/graph/backend.hpp>
@@ -42,7 +42,7 @@ struct Value {
 template <class T>
 [[nodiscard]] Value make_value(T content) {
     Value value{std::make_shared<const T>(std::move(content))};
-    if constexpr (std::equality_comparable<T>) value.equal = equal_as<T>;
+    if constexpr (Comparable<T>) value.equal = equal_as<T>;
     return value;
 }
 

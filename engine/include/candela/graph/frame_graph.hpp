@@ -15,6 +15,7 @@
 #include <vector>
 
 #include <candela/api.hpp>
+#include <candela/ecs/comparable.hpp>
 #include <candela/ecs/world.hpp>
 #include <candela/graph/resources.hpp>
 
@@ -181,7 +182,7 @@ class CANDELA_API Pass {
     /// A constant on which the pass's result depends, for example one that the function captures.
     /// `GraphRuntime::switch_to` keeps the results of a pass only if its parameters are equal in both graphs.
     /// The graph owns the copy.
-    template <std::equality_comparable T>
+    template <Comparable T>
     void parameter(T value) {
         declare_parameter(typeid(T), arena_.store(std::move(value)), detail::equal_as<T>);
     }
