@@ -5,7 +5,7 @@
 // Numbers are written, and files quoted in messages, as the importer and the exporter do it.
 #include "engine/import/shortest.hpp"
 #include "engine/import/unit_length.hpp"
-#include "engine/json/json.hpp"
+#include "engine/read_json.hpp"
 #include "engine/readable.hpp"
 
 // Boxes around objects.

@@ -107,7 +107,7 @@ Json to_json(const std::string& text) {
     Json json = text;
     try {
         static_cast<void>(json.dump());
-    } catch (const JsonError&) {
+    } catch (const Json::exception&) {
         throw SceneError("a name is not valid UTF-8");
     }
     return json;
@@ -143,16 +143,14 @@ Json Draft::add_picture(std::vector<std::byte> encoded, std::string_view ending)
 }
 
 std::vector<OutputFile> Draft::finish() {
-    if (!extensions_.empty()) {
-        document["extensionsUsed"] = Json::array({extensions_.begin(), extensions_.end()});
-    }
+    if (!extensions_.empty()) document["extensionsUsed"] = extensions_;
     if (!buffer_.empty()) document["buffers"] = Json::array({Json{{"byteLength", buffer_.size()}}});
     if (!buffer_.empty() && !binary_) {
         files_.push_back({beside(".bin"), buffer_});
         document["buffers"][0]["uri"] = percent_encoded(utf8_of(files_.back().path.filename()));
     }
     const std::string json = document.dump(binary_ ? -1 : 1);
-    check_schema(Json::parse(json));  // what the import would refuse is not written
+    check_schema(document);  // what the import would refuse is not written
     files_.push_back({path_, to_bytes(binary_ ? binary_container(json, to_text(buffer_)) : json)});
     return std::move(files_);
 }

@@ -13,8 +13,8 @@
 #include <glm/vec3.hpp>
 #include <glm/vec4.hpp>
 
+#include "engine/import/gltf_values.hpp"
 #include "engine/import/output_files.hpp"
-#include "engine/json/json.hpp"
 
 namespace candela::gltf {
 

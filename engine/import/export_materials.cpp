@@ -68,7 +68,7 @@ void write_gloss(const Material& material, Json& json, Draft& draft) {
     if (material.specular_colour != glm::vec3(1.0F)) {
         specular["specularColorFactor"] = to_json(material.specular_colour);
     }
-    if (!specular.members().empty()) {
+    if (!specular.empty()) {
         json["extensions"][specular_extension] = std::move(specular);
         draft.use_extension(specular_extension);
     }

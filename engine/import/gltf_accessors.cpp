@@ -1,16 +1,18 @@
 #include "engine/import/gltf_accessors.hpp"
 
 #include <algorithm>
+#include <array>
+#include <bit>
 #include <cmath>
 #include <cstring>
 #include <limits>
 #include <optional>
 #include <string>
 #include <string_view>
+#include <tuple>
 
 #include <fmt/format.h>
 #include <glm/common.hpp>
-#include <glm/gtc/vec1.hpp>
 
 #include <candela/scene/scene_error.hpp>
 #include "engine/import/gltf_constants.hpp"
@@ -48,20 +50,20 @@ int components_of(std::string_view type) {
 }
 
 ElementSource source_in(const Json& object, int component_type) {
-    return {index_in(object, "bufferView"), number_in<std::size_t>(object, "byteOffset", 0), component_type};
+    return {index_in(object, "bufferView"), value_in(object, "byteOffset", std::size_t{0}), component_type};
 }
 
 Accessor accessor_at(const Document& document, int index) {
     const Json& json = document.at("accessors", index);
     Accessor accessor;
-    accessor.source = source_in(json, json.at("componentType").whole<int>());
-    accessor.components = components_of(json.at("type").text());
-    accessor.count = json.at("count").whole<std::size_t>();
-    accessor.normalized = flag_in(json, "normalized", false);
-    if (const Json* const sparse = json.find("sparse")) {
+    accessor.source = source_in(json, json.at("componentType").get<int>());
+    accessor.components = components_of(json.at("type").get<std::string>());
+    accessor.count = json.at("count").get<std::size_t>();
+    accessor.normalized = value_in(json, "normalized", false);
+    if (const Json* const sparse = find_member(json, "sparse")) {
         const Json& indices = sparse->at("indices");
-        accessor.sparse = {sparse->at("count").whole<std::size_t>(),
-                           source_in(indices, indices.at("componentType").whole<int>()),
+        accessor.sparse = {sparse->at("count").get<std::size_t>(),
+                           source_in(indices, indices.at("componentType").get<int>()),
                            source_in(sparse->at("values"), accessor.source.component_type)};
     }
     return accessor;
@@ -95,7 +97,7 @@ struct Run {
 Elements locate(const Document& document, const Run& run) {
     const Bytes bytes = buffer_view_bytes(document, run.buffer_view);
     const Json& view = document.at("bufferViews", run.buffer_view);
-    const std::size_t stride = number_in(view, "byteStride", run.element_size);
+    const std::size_t stride = value_in(view, "byteStride", run.element_size);
     if (stride < run.element_size) {
         throw SceneError(
             fmt::format("{} has elements of {} bytes, more than the stride of {} of buffer view {}",
@@ -106,7 +108,7 @@ Elements locate(const Document& document, const Run& run) {
     if (!fits) {
         throw SceneError(fmt::format("{} reads past the end of buffer view {}", run.owner, run.buffer_view));
     }
-    if ((number_in<std::size_t>(view, "byteOffset", 0) + run.offset) % run.component_size != 0) {
+    if ((value_in(view, "byteOffset", std::size_t{0}) + run.offset) % run.component_size != 0) {
         throw SceneError(
             fmt::format("{} is not aligned to its components of {} bytes", run.owner, run.component_size));
     }
@@ -234,30 +236,65 @@ float real_component(const unsigned char* element, std::size_t i, const Accessor
     }
 }
 
-template <class Vector>
-void check_finite(const std::vector<Vector>& elements, int index, const Selection& selection) {
-    for (std::size_t i = 0; i < elements.size(); ++i) {
-        for (int k = 0; k < Vector::length(); ++k) {
-            if (!std::isfinite(elements[i][k])) {
-                throw SceneError(
-                    fmt::format("accessor {} has a NaN or infinity in element {}", index, selection[i]));
-            }
-        }
-    }
+/// What an accessor is to hold: `plural`, as vectors of this type, of FLOAT or of these integers.
+struct Use {
+    std::string_view plural;
+    std::string_view type;
+    bool unsigned_fractions = false;    ///< normalised UNSIGNED_BYTE and UNSIGNED_SHORT
+    bool signed_fractions = false;      ///< normalised BYTE and SHORT
+    bool quantized_numbers = false;     ///< by KHR_mesh_quantization: of 8 and 16 bits, normalised or not
+    bool quantized_directions = false;  ///< the same: normalised BYTE and SHORT
+};
+
+bool allows(const Use& use, const Document& document, const Accessor& accessor) {
+    const int type = accessor.source.component_type;
+    if (type == floating_point) return true;
+    if (type > unsigned_short) return false;
+    const bool is_signed = type == signed_byte || type == signed_short;
+    if (accessor.normalized && (is_signed ? use.signed_fractions : use.unsigned_fractions)) return true;
+    const bool is_direction = accessor.normalized && is_signed;
+    return document.is_quantized && (use.quantized_numbers || (use.quantized_directions && is_direction));
 }
 
-template <class Vector>
-std::vector<Vector> read_reals(const Document& document, int index, const Selection& selection) {
+SceneError misfit(int index, std::string_view plural, std::string_view type) {
+    return SceneError(fmt::format("accessor {} holds {}, but is not {}", index, plural, type));
+}
+
+SceneError misfit(int index, const Use& use, const Document& document) {
+    std::string type = fmt::format("{} of FLOAT", use.type);
+    if (use.unsigned_fractions && use.signed_fractions) {
+        type += " or of normalised integers of 8 or 16 bits";
+    } else if (use.unsigned_fractions) {
+        type += " or of normalised UNSIGNED_BYTE or UNSIGNED_SHORT";
+    } else if (use.signed_fractions) {
+        type += " or of normalised BYTE or SHORT";
+    }
+    if (document.is_quantized && (use.quantized_numbers || use.quantized_directions)) {
+        type += ", or of a type of KHR_mesh_quantization";
+    }
+    return misfit(index, use.plural, type);
+}
+
+/// Elements that consist of floats.
+template <class Element>
+std::vector<Element> read_reals(const Document& document, int index, const Selection& selection,
+                                const Use& use) {
+    using Parts = std::array<float, sizeof(Element) / sizeof(float)>;
     const Accessor accessor = accessor_at(document, index);
-    auto vectors = read<Vector>(document, index, selection, [&accessor](const unsigned char* element) {
-        Vector vector;
-        for (int i = 0; i < Vector::length(); ++i) {
-            vector[i] = real_component(element, static_cast<std::size_t>(i), accessor);
-        }
-        return vector;
+    if (accessor.components != int{std::tuple_size_v<Parts>} || !allows(use, document, accessor)) {
+        throw misfit(index, use, document);
+    }
+    auto elements = read<Element>(document, index, selection, [&accessor](const unsigned char* element) {
+        Parts parts;
+        for (std::size_t i = 0; i < parts.size(); ++i) parts[i] = real_component(element, i, accessor);
+        return std::bit_cast<Element>(parts);
     });
-    check_finite(vectors, index, selection);
-    return vectors;
+    const auto is_finite = [](float part) { return std::isfinite(part); };
+    for (std::size_t i = 0; i < elements.size(); ++i) {
+        if (std::ranges::all_of(std::bit_cast<Parts>(elements[i]), is_finite)) continue;
+        throw SceneError(fmt::format("accessor {} has a NaN or infinity in element {}", index, selection[i]));
+    }
+    return elements;
 }
 
 /// The components, one after the other.
@@ -269,40 +306,6 @@ std::vector<float> numbers_of(const std::vector<Vector>& vectors) {
         for (int i = 0; i < Vector::length(); ++i) numbers.push_back(vector[i]);
     }
     return numbers;
-}
-
-bool is_float(const Accessor& accessor) {
-    return accessor.source.component_type == floating_point;
-}
-
-/// Whether the components are FLOAT, or normalised UNSIGNED_BYTE or UNSIGNED_SHORT.
-bool has_real_components(const Accessor& accessor) {
-    const int type = accessor.source.component_type;
-    const bool integers = type == unsigned_byte || type == unsigned_short;
-    return is_float(accessor) || (integers && accessor.normalized);
-}
-
-/// Whether the components are normalised BYTE or SHORT.
-bool has_signed_fractions(const Accessor& accessor) {
-    const int type = accessor.source.component_type;
-    return accessor.normalized && (type == signed_byte || type == signed_short);
-}
-
-/// Whether KHR_mesh_quantization allows the components for positions and texture coordinates: integers of 8
-/// or 16 bits.
-bool has_quantized_components(const Document& document, const Accessor& accessor) {
-    const int type = accessor.source.component_type;
-    return document.is_quantized && type >= signed_byte && type <= unsigned_short;
-}
-
-/// The same for normals and tangents: normalised BYTE or SHORT.
-bool has_quantized_directions(const Document& document, const Accessor& accessor) {
-    return document.is_quantized && has_signed_fractions(accessor);
-}
-
-/// What messages add to the types that glTF itself allows.
-const char* or_quantized(const Document& document) {
-    return document.is_quantized ? ", or of a type of KHR_mesh_quantization" : "";
 }
 
 }  // namespace
@@ -318,8 +321,8 @@ Bytes buffer_view_bytes(const Document& document, int buffer_view) {
     const auto decoded = document.decoded_views.find(buffer_view);
     if (decoded != document.decoded_views.end()) return decoded->second;
     const Json& view = document.at("bufferViews", buffer_view);
-    if (view.find_path(fmt::format("extensions/{}", meshopt_extension)) &&
-        document.buffers[view.at("buffer").whole<std::size_t>()].bytes.empty()) {
+    if (find_member(view, fmt::format("extensions.{}", meshopt_extension)) &&
+        document.buffers[view.at("buffer").get<std::size_t>()].bytes.empty()) {
         throw SceneError(fmt::format("buffer view {} is compressed by {}, which is not supported",
                                      buffer_view, meshopt_extension));
     }
@@ -327,9 +330,9 @@ Bytes buffer_view_bytes(const Document& document, int buffer_view) {
 }
 
 Bytes buffer_bytes(const Document& document, const Json& range, int buffer_view) {
-    const auto buffer = range.at("buffer").whole<std::size_t>();
-    const auto length = range.at("byteLength").whole<std::size_t>();
-    const auto offset = number_in<std::size_t>(range, "byteOffset", 0);
+    const auto buffer = range.at("buffer").get<std::size_t>();
+    const auto length = range.at("byteLength").get<std::size_t>();
+    const auto offset = value_in(range, "byteOffset", std::size_t{0});
     const Bytes bytes = document.buffers[buffer].bytes;
     if (offset > bytes.size() || length > bytes.size() - offset) {
         throw SceneError(fmt::format("buffer view {} reads past the end of buffer {}", buffer_view, buffer));
@@ -345,91 +348,68 @@ ElementLayout layout_of(const Document& document, int index) {
 }
 
 std::size_t element_count(const Document& document, int accessor) {
-    return document.at("accessors", accessor).at("count").whole<std::size_t>();
+    return document.at("accessors", accessor).at("count").get<std::size_t>();
 }
 
 bool has_data(const Document& document, int accessor) {
     return has_elements(document, accessor) || document.at("accessors", accessor).contains("sparse");
 }
 
-std::vector<glm::vec3> read_positions(const Document& document, int index, const Selection& selection) {
-    const Accessor accessor = accessor_at(document, index);
-    if (accessor.components != 3 || !(is_float(accessor) || has_quantized_components(document, accessor))) {
-        throw SceneError(fmt::format("accessor {} holds positions, but is not VEC3 of FLOAT{}", index,
-                                     or_quantized(document)));
+void check_count(const Document& document, const Json& primitive, int accessor, std::string_view plural) {
+    const std::size_t positions = element_count(document, index_in(primitive, "attributes.POSITION"));
+    const std::size_t count = element_count(document, accessor);
+    if (count != positions) {
+        throw SceneError(fmt::format("it has {} positions, but {} {}", positions, count, plural));
     }
-    return read_reals<glm::vec3>(document, index, selection);
+}
+
+std::vector<glm::vec3> read_positions(const Document& document, int index, const Selection& selection) {
+    return read_reals<glm::vec3>(document, index, selection,
+                                 {.plural = "positions", .type = "VEC3", .quantized_numbers = true});
 }
 
 std::vector<glm::vec3> read_normals(const Document& document, int index, const Selection& selection) {
-    const Accessor accessor = accessor_at(document, index);
-    if (accessor.components != 3 || !(is_float(accessor) || has_quantized_directions(document, accessor))) {
-        throw SceneError(fmt::format("accessor {} holds normals, but is not VEC3 of FLOAT{}", index,
-                                     or_quantized(document)));
-    }
-    return read_reals<glm::vec3>(document, index, selection);
+    return read_reals<glm::vec3>(document, index, selection,
+                                 {.plural = "normals", .type = "VEC3", .quantized_directions = true});
 }
 
 std::vector<glm::vec4> read_tangents(const Document& document, int index, const Selection& selection) {
-    const Accessor accessor = accessor_at(document, index);
-    if (accessor.components != 4 || !(is_float(accessor) || has_quantized_directions(document, accessor))) {
-        throw SceneError(fmt::format("accessor {} holds tangents, but is not VEC4 of FLOAT{}", index,
-                                     or_quantized(document)));
-    }
-    return read_reals<glm::vec4>(document, index, selection);
+    return read_reals<glm::vec4>(document, index, selection,
+                                 {.plural = "tangents", .type = "VEC4", .quantized_directions = true});
 }
 
 std::vector<glm::vec3> read_vectors(const Document& document, int index, const Selection& selection) {
-    const Accessor accessor = accessor_at(document, index);
-    if (accessor.components != 3 || !is_float(accessor)) {
-        throw SceneError(
-            fmt::format("accessor {} holds translations or scales, but is not VEC3 of FLOAT", index));
-    }
-    return read_reals<glm::vec3>(document, index, selection);
+    return read_reals<glm::vec3>(document, index, selection,
+                                 {.plural = "translations or scales", .type = "VEC3"});
 }
 
 std::vector<glm::vec4> read_rotations(const Document& document, int index, const Selection& selection) {
-    const Accessor accessor = accessor_at(document, index);
-    if (accessor.components != 4 || !(is_float(accessor) || has_signed_fractions(accessor))) {
-        throw SceneError(fmt::format(
-            "accessor {} holds rotations, but is not VEC4 of FLOAT or of normalised BYTE or SHORT", index));
-    }
-    return read_reals<glm::vec4>(document, index, selection);
+    return read_reals<glm::vec4>(document, index, selection,
+                                 {.plural = "rotations", .type = "VEC4", .signed_fractions = true});
 }
 
 std::vector<glm::vec2> read_texture_coordinates(const Document& document, int index,
                                                 const Selection& selection) {
-    const Accessor accessor = accessor_at(document, index);
-    const bool is_known = has_real_components(accessor) || has_quantized_components(document, accessor);
-    if (accessor.components != 2 || !is_known) {
-        throw SceneError(
-            fmt::format("accessor {} holds texture coordinates, but is not VEC2 of FLOAT or of "
-                        "normalised UNSIGNED_BYTE or UNSIGNED_SHORT{}",
-                        index, or_quantized(document)));
-    }
-    return read_reals<glm::vec2>(document, index, selection);
+    return read_reals<glm::vec2>(document, index, selection,
+                                 {.plural = "texture coordinates",
+                                  .type = "VEC2",
+                                  .unsigned_fractions = true,
+                                  .quantized_numbers = true});
 }
 
 std::vector<glm::u16vec4> read_colours(const Document& document, int index, const Selection& selection) {
-    const Accessor accessor = accessor_at(document, index);
-    const bool has_alpha = accessor.components == 4;
-    if ((accessor.components != 3 && !has_alpha) || !has_real_components(accessor)) {
-        throw SceneError(
-            fmt::format("accessor {} holds colours, but is not VEC3 or VEC4 of FLOAT or of "
-                        "normalised UNSIGNED_BYTE or UNSIGNED_SHORT",
-                        index));
-    }
-    const auto colours =
-        read<glm::vec4>(document, index, selection, [&accessor, has_alpha](const unsigned char* element) {
-            return glm::vec4(real_component(element, 0, accessor), real_component(element, 1, accessor),
-                             real_component(element, 2, accessor),
-                             has_alpha ? real_component(element, 3, accessor) : 1.0F);
-        });
-    check_finite(colours, index, selection);
+    const Use use{.plural = "colours", .type = "VEC3 or VEC4", .unsigned_fractions = true};
     std::vector<glm::u16vec4> rounded;
-    rounded.reserve(colours.size());
-    for (const glm::vec4& colour : colours) {
+    rounded.reserve(selection.count());
+    const auto add = [&](const glm::vec4& colour) {
         rounded.emplace_back(glm::clamp(colour, 0.0F, 1.0F) * 65535.0F + 0.5F);
+    };
+    if (accessor_at(document, index).components == 3) {
+        for (const glm::vec3& colour : read_reals<glm::vec3>(document, index, selection, use)) {
+            add(glm::vec4(colour, 1.0F));
+        }
+    } else {
+        std::ranges::for_each(read_reals<glm::vec4>(document, index, selection, use), add);
     }
     return rounded;
 }
@@ -439,8 +419,7 @@ std::vector<glm::u16vec4> read_joints(const Document& document, int index, const
     const int type = accessor.source.component_type;
     const bool is_known = (type == unsigned_byte || type == unsigned_short) && !accessor.normalized;
     if (accessor.components != 4 || !is_known) {
-        throw SceneError(fmt::format(
-            "accessor {} holds joints, but is not VEC4 of UNSIGNED_BYTE or UNSIGNED_SHORT", index));
+        throw misfit(index, "joints", "VEC4 of UNSIGNED_BYTE or UNSIGNED_SHORT");
     }
     return read<glm::u16vec4>(document, index, selection, [type](const unsigned char* element) {
         const auto joint = [&](std::size_t i) {
@@ -451,65 +430,37 @@ std::vector<glm::u16vec4> read_joints(const Document& document, int index, const
 }
 
 std::vector<glm::vec4> read_weights(const Document& document, int index, const Selection& selection) {
-    const Accessor accessor = accessor_at(document, index);
-    if (accessor.components != 4 || !has_real_components(accessor)) {
-        throw SceneError(fmt::format(
-            "accessor {} holds weights, but is not VEC4 of FLOAT or of normalised UNSIGNED_BYTE or "
-            "UNSIGNED_SHORT",
-            index));
-    }
-    return read_reals<glm::vec4>(document, index, selection);
+    return read_reals<glm::vec4>(document, index, selection,
+                                 {.plural = "weights", .type = "VEC4", .unsigned_fractions = true});
 }
 
 std::vector<glm::mat4> read_matrices(const Document& document, int index, const Selection& selection) {
-    const Accessor accessor = accessor_at(document, index);
-    if (accessor.components != 16 || !is_float(accessor)) {
-        throw SceneError(fmt::format("accessor {} holds matrices, but is not MAT4 of FLOAT", index));
-    }
-    auto matrices = read<glm::mat4>(document, index, selection, load<glm::mat4>);
-    for (std::size_t i = 0; i < matrices.size(); ++i) {
-        for (int k = 0; k < 16; ++k) {
-            if (!std::isfinite(matrices[i][k / 4][k % 4])) {
-                throw SceneError(
-                    fmt::format("accessor {} has a NaN or infinity in element {}", index, selection[i]));
-            }
-        }
-    }
-    return matrices;
+    return read_reals<glm::mat4>(document, index, selection, {.plural = "matrices", .type = "MAT4"});
 }
 
 std::vector<float> read_key_times(const Document& document, int index) {
-    const Accessor accessor = accessor_at(document, index);
-    if (accessor.components != 1 || !is_float(accessor)) {
-        throw SceneError(fmt::format("accessor {} holds times, but is not SCALAR of FLOAT", index));
-    }
-    return numbers_of(read_reals<glm::vec1>(document, index, Selection(accessor.count)));
+    return read_reals<float>(document, index, Selection(element_count(document, index)),
+                             {.plural = "times", .type = "SCALAR"});
 }
 
 std::vector<float> read_key_values(const Document& document, int index, std::size_t components,
                                    bool may_be_integers) {
-    const Accessor accessor = accessor_at(document, index);
-    const bool are_integers =
-        may_be_integers && (has_real_components(accessor) || has_signed_fractions(accessor));
-    if (static_cast<std::size_t>(accessor.components) != components ||
-        !(is_float(accessor) || are_integers)) {
-        const std::string type = components == 1 ? "SCALAR" : fmt::format("VEC{}", components);
-        throw SceneError(fmt::format("accessor {} holds values of keys, but is not {} of FLOAT{}", index,
-                                     type,
-                                     may_be_integers ? " or of normalised integers of 8 or 16 bits" : ""));
-    }
-    const Selection whole(accessor.count);
-    if (components == 1) return numbers_of(read_reals<glm::vec1>(document, index, whole));
-    if (components == 3) return numbers_of(read_reals<glm::vec3>(document, index, whole));
-    return numbers_of(read_reals<glm::vec4>(document, index, whole));
+    const std::string type = components == 1 ? "SCALAR" : fmt::format("VEC{}", components);
+    const Use use{.plural = "values of keys",
+                  .type = type,
+                  .unsigned_fractions = may_be_integers,
+                  .signed_fractions = may_be_integers};
+    const Selection whole(element_count(document, index));
+    if (components == 1) return read_reals<float>(document, index, whole, use);
+    if (components == 3) return numbers_of(read_reals<glm::vec3>(document, index, whole, use));
+    return numbers_of(read_reals<glm::vec4>(document, index, whole, use));
 }
 
 std::vector<std::uint32_t> read_indices(const Document& document, int index, std::size_t vertex_count) {
     const Accessor accessor = accessor_at(document, index);
     const int type = accessor.source.component_type;
     if (accessor.components != 1 || !is_unsigned(type)) {
-        throw SceneError(
-            fmt::format("accessor {} holds indices, but is not SCALAR of an unsigned integer", index));
+        throw misfit(index, "indices", "SCALAR of an unsigned integer");
     }
     auto indices =
         read<std::uint32_t>(document, index, Selection(accessor.count),

@@ -3,6 +3,7 @@
 #include <cstddef>
 #include <cstdint>
 #include <span>
+#include <string_view>
 #include <vector>
 
 #include <glm/mat4x4.hpp>
@@ -55,6 +56,10 @@ struct ElementLayout {
 
 /// The number of elements.
 [[nodiscard]] std::size_t element_count(const Document& document, int accessor);
+
+/// Throws SceneError unless an accessor with `plural` of a primitive has an element for each of its
+/// positions.
+void check_count(const Document& document, const Json& primitive, int accessor, std::string_view plural);
 
 /// Whether any of its elements are in the file or were decoded. Without, all are zeros, unless an extension
 /// that is not supported holds them.

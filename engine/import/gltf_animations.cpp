@@ -71,16 +71,17 @@ class AnimationReader {
         AnimationClip clip;
         clip.name = text_in(source, "name", fmt::format("animation {}", index));
         std::map<std::pair<int, std::size_t>, std::size_t> known;  // by sampler, and its components
-        for (const Json& channel : source.at("channels").items()) {
+        for (const Json& channel : source.at("channels")) {
             const std::optional<int> node = node_of(channel);
             if (!node) continue;
-            const AnimatedProperty property = *property_of(channel.at("target").at("path").text());
+            const AnimatedProperty property =
+                *property_of(channel.at("target").at("path").get<std::string>());
             const std::size_t components = components_of(*node, property);
             if (components == 0) {
                 omissions_.insert("animations of weights of nodes without morph targets are ignored");
                 continue;
             }
-            const int sampler = channel.at("sampler").whole<int>();
+            const int sampler = channel.at("sampler").get<int>();
             const Json& samplers = source.at("samplers");
             if (static_cast<std::size_t>(sampler) >= samplers.size()) {
                 throw SceneError(fmt::format("a channel has sampler {}, but there are {} samplers", sampler,
@@ -104,14 +105,14 @@ class AnimationReader {
     std::optional<int> node_of(const Json& channel) {
         const Json& target = channel.at("target");
         const int node = index_in(target, "node");
-        if (!property_of(target.at("path").text())) {
+        if (!property_of(target.at("path").get<std::string>())) {
             omissions_.insert(
                 "animations of other values than translation, rotation, scale and weights are ignored");
         } else if (node < 0) {
             omissions_.insert("animations without a node are ignored");
         } else if (places_[static_cast<std::size_t>(node)] == nowhere) {
             omissions_.insert("animations of nodes that are not in the scene are ignored");
-        } else if (document_.at("nodes", node).contains("matrix") && !target.at("path").is("weights")) {
+        } else if (document_.at("nodes", node).contains("matrix") && target.at("path") != "weights") {
             omissions_.insert("animations of nodes with a matrix are ignored");
         } else {
             return node;
@@ -139,8 +140,8 @@ class AnimationReader {
     AnimationSampler read_sampler(const Json& source, AnimatedProperty property, std::size_t components) {
         AnimationSampler sampler;
         sampler.interpolation = interpolation_of(source);
-        sampler.times = times_of(source.at("input").whole<int>());
-        const int output = source.at("output").whole<int>();
+        sampler.times = times_of(source.at("input").get<int>());
+        const int output = source.at("output").get<int>();
         const bool is_weights = property == AnimatedProperty::morph_weights;
         const std::size_t parts = sampler.interpolation == Interpolation::cubic_spline ? 3 : 1;
         const std::size_t wanted = sampler.times->size() * parts * (is_weights ? components : 1);

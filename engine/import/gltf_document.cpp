@@ -79,19 +79,11 @@ Container split(Bytes bytes) {
     return container;
 }
 
-Json parse_json(Bytes text) {
-    try {
-        return Json::parse({reinterpret_cast<const char*>(text.data()), text.size()});
-    } catch (const JsonError& error) {
-        throw SceneError(error.what());
-    }
-}
-
 /// The names of extensions in one of the document's lists.
 std::set<std::string> extensions_in(const Json& document, const char* member) {
     std::set<std::string> listed;
-    for (const Json& name : list_in(document, member).items()) {
-        listed.insert(name.text());
+    for (const Json& name : list_in(document, member)) {
+        listed.insert(name.get<std::string>());
     }
     return listed;
 }
@@ -123,17 +115,17 @@ std::vector<std::string> check_extensions(const Json& document) {
 /// Whether nothing is read from the buffer: its views are decoded from another one, or it is not there for
 /// who cannot do so.
 bool is_placeholder(const Json& buffer) {
-    const std::string path = fmt::format("extensions/{}/fallback", meshopt_extension);
-    return flag_in(buffer, path, false) && (is_supported(meshopt_extension) || !buffer.contains("uri"));
+    const std::string path = fmt::format("extensions.{}.fallback", meshopt_extension);
+    return value_in(buffer, path, false) && (is_supported(meshopt_extension) || !buffer.contains("uri"));
 }
 
 Buffer load_buffer(const Json& buffer, std::size_t index, const std::optional<Bytes>& binary,
                    ImportFiles& files) {
-    const auto length = buffer.at("byteLength").whole<std::size_t>();
+    const auto length = buffer.at("byteLength").get<std::size_t>();
     Buffer loaded;
     if (is_placeholder(buffer)) return loaded;
-    if (const Json* const uri = buffer.find("uri")) {
-        loaded.content = files.read(uri->text());
+    if (const Json* const uri = find_member(buffer, "uri")) {
+        loaded.content = files.read(uri->get_ref<const std::string&>());
         loaded.bytes = *loaded.content;
     } else if (index == 0 && binary) {
         loaded.bytes = *binary;
@@ -150,7 +142,7 @@ Buffer load_buffer(const Json& buffer, std::size_t index, const std::optional<By
 std::vector<Buffer> load_buffers(const Json& document, const std::optional<Bytes>& binary,
                                  ImportFiles& files) {
     std::vector<Buffer> buffers;
-    for (const Json& description : list_in(document, "buffers").items()) {
+    for (const Json& description : list_in(document, "buffers")) {
         const std::size_t index = buffers.size();
         buffers.push_back(naming(fmt::format("buffer {}", index),
                                  [&] { return load_buffer(description, index, binary, files); }));
@@ -160,19 +152,19 @@ std::vector<Buffer> load_buffers(const Json& document, const std::optional<Bytes
 
 /// Whether any material has the member at `path`.
 bool any_material(const Json& document, const std::string& path) {
-    return std::ranges::any_of(list_in(document, "materials").items(),
-                               [&](const Json& material) { return material.find_path(path) != nullptr; });
+    return std::ranges::any_of(list_in(document, "materials"),
+                               [&](const Json& material) { return find_member(material, path) != nullptr; });
 }
 
 /// A warning for each kind of thing that the file asks for explicitly and the import leaves out.
 std::vector<std::string> omissions(const Json& document) {
     std::vector<std::string> warnings;
     for (const char* texture : {"specularTexture", "specularColorTexture"}) {
-        if (any_material(document, fmt::format("extensions/{}/{}", specular_extension, texture))) {
+        if (any_material(document, fmt::format("extensions.{}.{}", specular_extension, texture))) {
             warnings.push_back(fmt::format("{}s of {} are ignored", texture, specular_extension));
         }
     }
-    if (any_material(document, fmt::format("extensions/{}/transmissionTexture", transmission_extension))) {
+    if (any_material(document, fmt::format("extensions.{}.transmissionTexture", transmission_extension))) {
         warnings.push_back(fmt::format("transmissionTextures of {} are approximated by their factor",
                                        transmission_extension));
     }
@@ -183,7 +175,9 @@ std::vector<std::string> omissions(const Json& document) {
 
 Document read_document(Bytes bytes, ImportFiles& files, ImportBudget& budget) {
     const Container container = split(bytes);
-    Document document{parse_json(container.json), {}, {}, {}, {}, false};
+    const auto* const text = reinterpret_cast<const char*>(container.json.data());
+    Document document;
+    document.json = parse_json({text, container.json.size()});
     const Json& json = document.json;
     check_schema(json);
     budget.check_nodes(document.all("nodes").size());

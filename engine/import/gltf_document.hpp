@@ -8,7 +8,6 @@
 #include "engine/import/gltf_values.hpp"
 #include "engine/import/import_budget.hpp"
 #include "engine/import/import_files.hpp"
-#include "engine/json/json.hpp"
 
 namespace candela::gltf {
 

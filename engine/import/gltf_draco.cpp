@@ -201,18 +201,18 @@ ElementLayout checked_layout(const Document& document, int accessor, std::size_t
 void decode_primitive(Document& document, const Json& primitive, const Json& extension,
                       ImportBudget& budget) {
     const int indices = index_in(primitive, "indices");
-    const int positions = index_in(primitive, "attributes/POSITION");
+    const int positions = index_in(primitive, "attributes.POSITION");
     if (indices < 0 || positions < 0)
         throw SceneError("its Draco data need accessors of positions and indices");
     if (has_data(document, indices) && has_data(document, positions)) return;
-    const int view = extension.at("bufferView").whole<int>();
+    const int view = extension.at("bufferView").get<int>();
     const auto mesh = naming(fmt::format("buffer view {}", view),
                              [&] { return decode_mesh(buffer_view_bytes(document, view), budget); });
     document.decoded_accessors[indices] =
         index_bytes(*mesh, checked_layout(document, indices, std::size_t{mesh->num_faces()} * 3, budget));
-    for (const JsonMember& member : extension.at("attributes").members()) {
-        const int accessor = index_in(primitive.at("attributes"), member.name);
-        const auto* const attribute = mesh->GetAttributeByUniqueId(member.value.whole<std::uint32_t>());
+    for (const auto& [name, value] : extension.at("attributes").items()) {
+        const int accessor = index_in(primitive.at("attributes"), name);
+        const auto* const attribute = mesh->GetAttributeByUniqueId(value.get<std::uint32_t>());
         if (accessor < 0) continue;
         if (!attribute) throw SceneError(fmt::format("accessor {} is not in its Draco data", accessor));
         document.decoded_accessors[accessor] = attribute_bytes(
@@ -223,8 +223,8 @@ void decode_primitive(Document& document, const Json& primitive, const Json& ext
 }  // namespace
 
 void decode_primitives(Document& document, const Json& mesh, ImportBudget& budget) {
-    for (const Json& primitive : mesh.at("primitives").items()) {
-        if (const Json* const draco = primitive.find_path("extensions/KHR_draco_mesh_compression")) {
+    for (const Json& primitive : mesh.at("primitives")) {
+        if (const Json* const draco = find_member(primitive, "extensions.KHR_draco_mesh_compression")) {
             decode_primitive(document, primitive, *draco, budget);
         }
     }

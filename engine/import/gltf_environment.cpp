@@ -34,12 +34,12 @@ std::shared_ptr<const SkyPicture> read_picture(const Document& document, const J
 
 std::optional<NamedEnvironment> read_environment(const Document& document, ImportFiles& files,
                                                  ImportBudget& budget) {
-    const Json* const source = default_scene(document).find_path("extensions/CANDELA_environment");
+    const Json* const source = find_member(default_scene(document), "extensions.CANDELA_environment");
     if (!source) return std::nullopt;
     return NamedEnvironment{text_in(*source, "name", "environment"),
                             Environment{.radiance = vector_in(*source, "radiance", glm::vec3(1.0F)),
                                         .picture = read_picture(document, *source, files, budget),
-                                        .rotation = number_in(*source, "rotation", 0.0F)}};
+                                        .rotation = value_in(*source, "rotation", 0.0F)}};
 }
 
 }  // namespace candela::gltf

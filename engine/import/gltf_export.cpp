@@ -35,6 +35,7 @@ namespace {
 
 using gltf::check;
 using gltf::Draft;
+using gltf::Json;
 using gltf::to_json;
 
 /// The entities that become nodes, sorted, so that the index of an entity is that of its node.

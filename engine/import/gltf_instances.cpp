@@ -14,16 +14,16 @@ namespace candela::gltf {
 
 namespace {
 
-constexpr std::string_view attributes_path = "extensions/EXT_mesh_gpu_instancing/attributes";
+constexpr std::string_view attributes_path = "extensions.EXT_mesh_gpu_instancing.attributes";
 
 }  // namespace
 
 std::size_t count_instances(const Document& document, const Json& node) {
-    const Json* const attributes = node.find_path(attributes_path);
+    const Json* const attributes = find_member(node, attributes_path);
     if (!attributes) return 0;
     std::optional<std::size_t> count;
-    for (const JsonMember& attribute : attributes->members()) {
-        const std::size_t elements = element_count(document, attribute.value.whole<int>());
+    for (const Json& accessor : *attributes) {
+        const std::size_t elements = element_count(document, accessor.get<int>());
         if (count.value_or(elements) != elements) {
             throw SceneError(fmt::format("its instances have {} values of one attribute and {} of another",
                                          *count, elements));
@@ -34,7 +34,7 @@ std::size_t count_instances(const Document& document, const Json& node) {
 }
 
 std::vector<Transform> read_instances(const Document& document, const Json& node, std::size_t count) {
-    const Json& attributes = *node.find_path(attributes_path);
+    const Json& attributes = *find_member(node, attributes_path);
     const Selection all(count);
     std::vector<Transform> transforms(count);
     if (const int translations = index_in(attributes, "TRANSLATION"); translations >= 0) {

@@ -50,8 +50,8 @@ template <class Light>
 void read_shape(const Json& /*source*/, int /*index*/, Light& /*light*/) {}
 
 void read_shape(const Json& source, int index, SpotLight& light) {
-    light.inner_cone = number_in(source, "spot/innerConeAngle", 0.0F);
-    light.outer_cone = std::min(number_in(source, "spot/outerConeAngle", half_pi / 2.0F), half_pi);
+    light.inner_cone = value_in(source, "spot.innerConeAngle", 0.0F);
+    light.outer_cone = std::min(value_in(source, "spot.outerConeAngle", half_pi / 2.0F), half_pi);
     if (light.inner_cone >= light.outer_cone) {
         throw SceneError(fmt::format("light {}: its inner cone of {} is not inside its outer cone of {}",
                                      index, light.inner_cone, light.outer_cone));
@@ -80,10 +80,10 @@ Light read(const Json& source, int index) {
     const LightTraits<Light>& kind = light_traits<Light>;
     Light light;
     light.colour = vector_in(source, "color", glm::vec3(1.0F));
-    strength_of(light) = number_in(source, "intensity", 1.0F);
-    light.casts_shadow = flag_in(source, "extensions/CANDELA_light/castsShadow", true);
+    strength_of(light) = value_in(source, "intensity", 1.0F);
+    light.casts_shadow = value_in(source, "extensions.CANDELA_light.castsShadow", true);
     if (kind.range != nullptr) {
-        light.*kind.range = number_in(source, "range", std::numeric_limits<float>::infinity());
+        light.*kind.range = value_in(source, "range", std::numeric_limits<float>::infinity());
     }
     read_shape(source, index, light);
     return light;
@@ -96,7 +96,7 @@ WrittenLight write_light(const AnyLight& light) {
 }
 
 AnyLight read_light(const Json& source, int index) {
-    const std::string& type = source.at("type").text();
+    const auto type = source.at("type").get<std::string>();
     std::optional<AnyLight> light;
     for_each_light_kind([&]<class Light>(const LightTraits<Light>&) {
         if (type == type_of<Light>) light = read<Light>(source, index);

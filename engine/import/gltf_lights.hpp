@@ -3,7 +3,7 @@
 #include <string>
 
 #include <candela/scene/lights.hpp>
-#include "engine/json/json.hpp"
+#include "engine/import/gltf_values.hpp"
 
 namespace candela::gltf {
 

@@ -49,15 +49,15 @@ Wraps wraps_of(const Document& document, const Json& texture) {
     const int index = index_in(texture, "sampler");
     if (index < 0) return {};
     const Json& sampler = document.at("samplers", index);
-    return {to_wrap(number_in(sampler, "wrapS", wrap_repeat), index),
-            to_wrap(number_in(sampler, "wrapT", wrap_repeat), index)};
+    return {to_wrap(value_in(sampler, "wrapS", wrap_repeat), index),
+            to_wrap(value_in(sampler, "wrapT", wrap_repeat), index)};
 }
 
 /// The index of a texture's image; -1 for none. Beside an image of a kind that an extension adds, there may
 /// be another one for who cannot read that kind.
 int image_of(const Json& texture) {
     const auto added_by = [&](const char* extension) {
-        return index_in(texture, fmt::format("extensions/{}/source", extension));
+        return index_in(texture, fmt::format("extensions.{}.source", extension));
     };
     const int webp = added_by(webp_extension);
     const int plain = index_in(texture, "source");
@@ -67,11 +67,11 @@ int image_of(const Json& texture) {
 
 /// What KHR_texture_transform of a textureInfo does to (u, v, 1): scales, then rotates, then moves.
 glm::mat3 transform_of(const Json& use) {
-    const Json* const transform = use.find_path("extensions/KHR_texture_transform");
+    const Json* const transform = find_member(use, "extensions.KHR_texture_transform");
     if (!transform) return glm::mat3(1.0F);
     const auto scale = vector_in(*transform, "scale", glm::vec2(1.0F));
     const auto offset = vector_in(*transform, "offset", glm::vec2(0.0F));
-    const double rotation = number_in(*transform, "rotation", 0.0);
+    const double rotation = value_in(*transform, "rotation", 0.0);
     const auto cosine = static_cast<float>(std::cos(rotation));
     const auto sine = static_cast<float>(std::sin(rotation));
     return {glm::vec3(cosine * scale.x, -sine * scale.x, 0.0F),
@@ -80,8 +80,8 @@ glm::mat3 transform_of(const Json& use) {
 
 /// The texture coordinates of a textureInfo. The extension's set replaces that of the textureInfo.
 Coordinates coordinates_of(const Json& use) {
-    const int set = number_in(use, "texCoord", 0);
-    return {number_in(use, "extensions/KHR_texture_transform/texCoord", set), transform_of(use)};
+    const int set = value_in(use, "texCoord", 0);
+    return {value_in(use, "extensions.KHR_texture_transform.texCoord", set), transform_of(use)};
 }
 
 /// Reads the images of materials. Textures with the same bytes and wrapping share one.
@@ -148,7 +148,7 @@ class ImageReader {
         }
         if (view >= 0) return buffer_view_bytes(document_, view);
         Content& content = contents_[index];
-        if (!content) content = files_.read(source.at("uri").text());
+        if (!content) content = files_.read(source.at("uri").get_ref<const std::string&>());
         return *content;
     }
 
@@ -169,19 +169,19 @@ AlphaMode to_alpha_mode(std::string_view name) {
 
 /// Factors of pbrMetallicRoughness, KHR_materials_specular, KHR_materials_ior and KHR_materials_transmission.
 void read_gloss(const Json& source, Material& material) {
-    material.metalness = number_in(source, "pbrMetallicRoughness/metallicFactor", 1.0F);
-    material.roughness = number_in(source, "pbrMetallicRoughness/roughnessFactor", 1.0F);
-    material.specular = number_in(source, "extensions/KHR_materials_specular/specularFactor", 1.0F);
+    material.metalness = value_in(source, "pbrMetallicRoughness.metallicFactor", 1.0F);
+    material.roughness = value_in(source, "pbrMetallicRoughness.roughnessFactor", 1.0F);
+    material.specular = value_in(source, "extensions.KHR_materials_specular.specularFactor", 1.0F);
     material.specular_colour =
-        vector_in(source, "extensions/KHR_materials_specular/specularColorFactor", glm::vec3(1.0F));
-    material.ior = number_in(source, "extensions/KHR_materials_ior/ior", 1.5F);
+        vector_in(source, "extensions.KHR_materials_specular.specularColorFactor", glm::vec3(1.0F));
+    material.ior = value_in(source, "extensions.KHR_materials_ior.ior", 1.5F);
     material.transmission =
-        number_in(source, "extensions/KHR_materials_transmission/transmissionFactor", 0.0F);
+        value_in(source, "extensions.KHR_materials_transmission.transmissionFactor", 0.0F);
 }
 
 void read_emission(const Json& source, const std::string& label, Material& material) {
     const double strength =
-        number_in(source, "extensions/KHR_materials_emissive_strength/emissiveStrength", 1.0);
+        value_in(source, "extensions.KHR_materials_emissive_strength.emissiveStrength", 1.0);
     material.emissive = glm::vec3(vector_in(source, "emissiveFactor", glm::dvec3(0.0)) * strength);
     if (!std::isfinite(std::max({material.emissive.r, material.emissive.g, material.emissive.b}))) {
         throw SceneError(fmt::format("{}: its emission is too large", label));
@@ -248,49 +248,49 @@ class TextureReader {
 
 /// Normal and occlusion textures.
 void read_bumps(const Json& source, TextureReader& textures, Material& material) {
-    material.normal_texture = textures.read(source.find("normalTexture"), Encoding::linear, StandIn::nothing,
-                                            "normal texture", material.second_uvs.normal);
-    material.normal_scale = number_in(source, "normalTexture/scale", 1.0F);
+    material.normal_texture = textures.read(find_member(source, "normalTexture"), Encoding::linear,
+                                            StandIn::nothing, "normal texture", material.second_uvs.normal);
+    material.normal_scale = value_in(source, "normalTexture.scale", 1.0F);
     material.occlusion_texture =
-        textures.read(source.find("occlusionTexture"), Encoding::linear, StandIn::nothing,
+        textures.read(find_member(source, "occlusionTexture"), Encoding::linear, StandIn::nothing,
                       "occlusion texture", material.second_uvs.occlusion);
-    material.occlusion_strength = number_in(source, "occlusionTexture/strength", 1.0F);
+    material.occlusion_strength = value_in(source, "occlusionTexture.strength", 1.0F);
 }
 
 ReadMaterial read_material(const Json& source, const std::string& label, ImageReader& images) {
     Material material;
     TextureReader textures(images, label);
     material.name = text_in(source, "name");
-    material.base_colour = vector_in(source, "pbrMetallicRoughness/baseColorFactor", glm::vec4(1.0F));
+    material.base_colour = vector_in(source, "pbrMetallicRoughness.baseColorFactor", glm::vec4(1.0F));
     bool is_second = false;  // never: this texture is the first
     material.base_colour_texture =
-        textures.read(source.find_path("pbrMetallicRoughness/baseColorTexture"), Encoding::srgb,
+        textures.read(find_member(source, "pbrMetallicRoughness.baseColorTexture"), Encoding::srgb,
                       StandIn::checker, "base colour texture", is_second);
     read_emission(source, label, material);
-    if (source.find_path("extensions/KHR_materials_unlit")) {
+    if (find_member(source, "extensions.KHR_materials_unlit")) {
         show_unlit(material);
     } else {
         read_gloss(source, material);
         if (emits(material)) {
             material.emissive_texture =
-                textures.read(source.find("emissiveTexture"), Encoding::srgb, StandIn::black,
+                textures.read(find_member(source, "emissiveTexture"), Encoding::srgb, StandIn::black,
                               "emissive texture", material.second_uvs.emissive);
         }
         material.metal_roughness_texture = textures.read(
-            source.find_path("pbrMetallicRoughness/metallicRoughnessTexture"), Encoding::linear,
+            find_member(source, "pbrMetallicRoughness.metallicRoughnessTexture"), Encoding::linear,
             StandIn::nothing, "metallic-roughness texture", material.second_uvs.metal_roughness);
         read_bumps(source, textures, material);
     }
-    material.double_sided = flag_in(source, "doubleSided", false);
+    material.double_sided = value_in(source, "doubleSided", false);
     material.alpha_mode = to_alpha_mode(text_in(source, "alphaMode"));
-    material.alpha_cutoff = number_in(source, "alphaCutoff", 0.5F);
+    material.alpha_cutoff = value_in(source, "alphaCutoff", 0.5F);
     return {std::make_shared<const Material>(std::move(material)), textures.first(), textures.second()};
 }
 
 std::vector<bool> used_materials(const Document& document, const std::vector<bool>& used_meshes) {
     std::vector<bool> used(document.all("materials").size());
     for (std::size_t i = 0; i < used_meshes.size(); ++i) {
-        for (const Json& primitive : document.all("meshes")[i].at("primitives").items()) {
+        for (const Json& primitive : document.all("meshes")[i].at("primitives")) {
             if (const int material = index_in(primitive, "material"); used_meshes[i] && material >= 0) {
                 used[static_cast<std::size_t>(material)] = true;
             }

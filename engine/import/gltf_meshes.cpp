@@ -33,13 +33,13 @@ using Corners = std::array<std::uint32_t, 3>;
 /// Warnings about kinds of content that were left out, each once.
 using Omissions = std::set<std::string>;
 
-std::optional<int> find_attribute(const Json& source, std::string_view name) {
-    const Json* const found = source.at("attributes").find(name);
-    return found ? std::optional(found->whole<int>()) : std::nullopt;
+/// The accessor of an attribute; -1 for none.
+int attribute_of(const Json& source, std::string_view name) {
+    return index_in(source.at("attributes"), name);
 }
 
 int mode_of(const Json& source) {
-    return number_in(source, "mode", mode_triangles);
+    return value_in(source, "mode", mode_triangles);
 }
 
 /// The accessor of the indices; -1 for none.
@@ -53,14 +53,10 @@ template <class Element, class Read, class Set>
 void read_attribute(const Document& document, const Json& source, std::string_view name,
                     std::string_view plural, const Selection& selection, std::vector<Element>& vertices,
                     Read read, Set set) {
-    const auto accessor = find_attribute(source, name);
-    if (!accessor) return;
-    const std::size_t positions = element_count(document, *find_attribute(source, "POSITION"));
-    const std::size_t count = element_count(document, *accessor);
-    if (count != positions) {
-        throw SceneError(fmt::format("it has {} positions, but {} {}", positions, count, plural));
-    }
-    const auto elements = read(document, *accessor, selection);
+    const int accessor = attribute_of(source, name);
+    if (accessor < 0) return;
+    check_count(document, source, accessor, plural);
+    const auto elements = read(document, accessor, selection);
     for (std::size_t i = 0; i < elements.size(); ++i) {
         set(vertices[i], elements[i]);
     }
@@ -113,8 +109,7 @@ std::vector<Vertex> read_vertices(const Document& document, const Json& source,
                                   const Coordinates& coordinates, const Selection& selection) {
     std::vector<Vertex> vertices;
     vertices.reserve(selection.count());
-    for (const glm::vec3& position :
-         read_positions(document, *find_attribute(source, "POSITION"), selection)) {
+    for (const glm::vec3& position : read_positions(document, attribute_of(source, "POSITION"), selection)) {
         vertices.push_back({position, glm::vec3(0.0F), glm::vec2(0.0F)});
     }
     read_attribute(document, source, "NORMAL", "normals", selection, vertices, read_normals, set_normal);
@@ -223,26 +218,26 @@ void fill_normals(std::vector<Vertex>& vertices, const std::vector<Corners>& tri
 /// extension that is not supported. Zeros would be drawn otherwise. Empty if it has them.
 std::string missing_data(const Document& document, const Json& source) {
     const int indices = indices_of(source);
-    const bool is_there = has_data(document, *find_attribute(source, "POSITION")) &&
-                          (indices < 0 || has_data(document, indices));
+    const bool is_there =
+        has_data(document, attribute_of(source, "POSITION")) && (indices < 0 || has_data(document, indices));
     if (is_there) return {};
-    for (const JsonMember& extension : list_in(source, "extensions").members()) {
-        if (!is_supported(extension.name)) {
-            return fmt::format("primitives whose data {} holds are skipped", readable(extension.name));
+    for (const auto& [name, extension] : list_in(source, "extensions").items()) {
+        if (!is_supported(name)) {
+            return fmt::format("primitives whose data {} holds are skipped", readable(name));
         }
     }
     return "primitives whose positions or indices have no data are skipped";
 }
 
 bool is_drawn(const Document& document, const Json& source, Omissions& omissions) {
-    if (find_attribute(source, "COLOR_1")) {
+    if (attribute_of(source, "COLOR_1") >= 0) {
         omissions.insert("vertex colours beyond the first set are ignored");
     }
     if (mode_of(source) < mode_triangles) {
         omissions.insert("points and lines are skipped");
         return false;
     }
-    if (!find_attribute(source, "POSITION")) {
+    if (attribute_of(source, "POSITION") < 0) {
         omissions.insert("primitives without positions are skipped");
         return false;
     }
@@ -266,11 +261,11 @@ std::uint64_t triangle_count(std::uint64_t order, int mode) {
 void count_triangles(const Document& document, const Json& source, ImportBudget& budget) {
     const int indices = indices_of(source);
     const std::uint64_t order =
-        element_count(document, indices >= 0 ? indices : *find_attribute(source, "POSITION"));
+        element_count(document, indices >= 0 ? indices : attribute_of(source, "POSITION"));
     const std::uint64_t triangles = triangle_count(order, mode_of(source));
     budget.add_triangles(triangles);
     budget.add_memory(order * sizeof(std::uint32_t) + triangles * sizeof(Corners));
-    if (!find_attribute(source, "NORMAL")) {
+    if (attribute_of(source, "NORMAL") < 0) {
         const std::uint64_t targets = list_in(source, "targets").size();
         budget.add_memory(triangles * 3 * (sizeof(Vertex) + targets * 2 * sizeof(glm::vec3)));
     }
@@ -280,7 +275,7 @@ void count_triangles(const Document& document, const Json& source, ImportBudget&
 /// to the file's coordinates of the normal texture; a transform may turn these.
 bool has_tangents(const Json& source, const ReadMaterial& material) {
     const Coordinates& bumps = material.material->second_uvs.normal ? *material.second_uvs : material.uv;
-    return find_attribute(source, "TANGENT") && find_attribute(source, "NORMAL") &&
+    return attribute_of(source, "TANGENT") >= 0 && attribute_of(source, "NORMAL") >= 0 &&
            bumps.transform == glm::mat3(1.0F);
 }
 
@@ -298,7 +293,7 @@ void complete_tangents(Primitive& primitive, ImportBudget& budget) {
 /// Without indices if no triangle has an area. Triangles that may get one when they move are kept.
 Primitive read_primitive(const Document& document, const Json& source, const ReadMaterial& material,
                          bool is_skinned, ImportBudget& budget) {
-    const std::size_t vertex_count = element_count(document, *find_attribute(source, "POSITION"));
+    const std::size_t vertex_count = element_count(document, attribute_of(source, "POSITION"));
     count_triangles(document, source, budget);
     std::vector<std::uint32_t> order = read_order(document, source, vertex_count);
     // Many primitives may share the vertices of one accessor, of which each uses a few.
@@ -326,7 +321,7 @@ Primitive read_primitive(const Document& document, const Json& source, const Rea
     std::erase_if(triangles, [&](const Corners& corners) {
         return is_rigid && face_normal(primitive.vertices, corners) == glm::vec3(0.0F);
     });
-    const bool is_flat = !find_attribute(source, "NORMAL");
+    const bool is_flat = attribute_of(source, "NORMAL") < 0;
     if (is_flat) unshare_vertices(primitive, triangles);
     fill_normals(primitive.vertices, triangles);
     for (MorphTarget& target : primitive.targets) {
@@ -350,7 +345,7 @@ Mesh read_mesh(const Document& document, const Json& source, const std::vector<R
     budget.add_memory(targets * sizeof(float));
     mesh.morph_weights = read_morph_weights(source, targets, std::vector<float>(targets));
     mesh.name = text_in(source, "name");
-    for (const Json& part : source.at("primitives").items()) {
+    for (const Json& part : source.at("primitives")) {
         if (!is_drawn(document, part, omissions)) continue;
         const int index = index_in(part, "material");
         const ReadMaterial& material =

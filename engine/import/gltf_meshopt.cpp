@@ -80,9 +80,9 @@ void apply_filter(const Compressed& compressed, std::vector<unsigned char>& deco
 std::vector<unsigned char> decode_view(const Document& document, int index, const Json& extension,
                                        ImportBudget& budget) {
     const Compressed compressed{text_in(extension, "mode"), text_in(extension, "filter", "NONE"),
-                                extension.at("count").whole<std::size_t>(),
-                                extension.at("byteStride").whole<std::size_t>()};
-    check_sizes(compressed, document.at("bufferViews", index).at("byteLength").whole<std::size_t>());
+                                extension.at("count").get<std::size_t>(),
+                                extension.at("byteStride").get<std::size_t>()};
+    check_sizes(compressed, document.at("bufferViews", index).at("byteLength").get<std::size_t>());
     const Bytes encoded = buffer_bytes(document, extension, index);
     budget.add_memory(compressed.count * compressed.stride);
     std::vector<unsigned char> decoded(compressed.count * compressed.stride);
@@ -94,10 +94,10 @@ std::vector<unsigned char> decode_view(const Document& document, int index, cons
 }  // namespace
 
 void decode_buffer_views(Document& document, ImportBudget& budget) {
-    const std::string path = fmt::format("extensions/{}", meshopt_extension);
+    const std::string path = fmt::format("extensions.{}", meshopt_extension);
     const Json& views = document.all("bufferViews");
     for (int i = 0; i < static_cast<int>(views.size()); ++i) {
-        if (const Json* const extension = document.at("bufferViews", i).find_path(path)) {
+        if (const Json* const extension = find_member(document.at("bufferViews", i), path)) {
             document.decoded_views[i] = naming(fmt::format("buffer view {}", i),
                                                [&] { return decode_view(document, i, *extension, budget); });
         }

@@ -18,12 +18,7 @@ std::vector<glm::vec3> read_offsets(const Document& document, const Json& primit
                                     Read read) {
     const int accessor = index_in(target, name);
     if (accessor < 0) return {};
-    const std::size_t positions = element_count(document, index_in(primitive, "attributes/POSITION"));
-    const std::size_t count = element_count(document, accessor);
-    if (count != positions) {
-        throw SceneError(
-            fmt::format("it has {} positions, but {} offsets in a morph target", positions, count));
-    }
+    check_count(document, primitive, accessor, "offsets in a morph target");
     budget.add_memory(selection.count() * sizeof(glm::vec3));
     return read(document, accessor, selection);
 }
@@ -32,7 +27,7 @@ std::vector<glm::vec3> read_offsets(const Document& document, const Json& primit
 
 std::size_t count_targets(const Json& mesh) {
     std::optional<std::size_t> targets;
-    for (const Json& primitive : mesh.at("primitives").items()) {
+    for (const Json& primitive : mesh.at("primitives")) {
         const std::size_t count = list_in(primitive, "targets").size();
         if (targets.value_or(count) != count) {
             throw SceneError(fmt::format("its primitives have {} and {} morph targets", *targets, count));
@@ -51,7 +46,7 @@ std::vector<float> read_morph_weights(const Json& object, std::size_t targets,
     }
     std::vector<float> weights;
     weights.reserve(targets);
-    for (const Json& weight : source.items()) weights.push_back(static_cast<float>(weight.number()));
+    for (const Json& weight : source) weights.push_back(weight.get<float>());
     return weights;
 }
 
@@ -61,8 +56,8 @@ std::vector<MorphTarget> read_targets(const Document& document, const Json& prim
     budget.add_memory(sources.size() * sizeof(MorphTarget));
     std::vector<MorphTarget> targets;
     targets.reserve(sources.size());
-    const bool with_normals = index_in(primitive, "attributes/NORMAL") >= 0;
-    for (const Json& source : sources.items()) {
+    const bool with_normals = index_in(primitive, "attributes.NORMAL") >= 0;
+    for (const Json& source : sources) {
         const auto read = [&](const char* name, auto from) {
             return read_offsets(document, primitive, source, name, selection, budget, from);
         };

@@ -36,11 +36,11 @@ const Json& children_of(const Document& document, int node) {
 std::vector<int> find_parents(const Document& document) {
     std::vector<int> parents(document.all("nodes").size(), -1);
     for (int node = 0; node < static_cast<int>(parents.size()); ++node) {
-        for (const Json& child : children_of(document, node).items()) {
-            int& parent = parents[child.whole<std::size_t>()];
+        for (const Json& child : children_of(document, node)) {
+            int& parent = parents[child.get<std::size_t>()];
             if (parent >= 0) {
-                throw SceneError(fmt::format("node {} has two parents, nodes {} and {}", child.whole<int>(),
-                                             parent, node));
+                throw SceneError(
+                    fmt::format("node {} has two parents, nodes {} and {}", child.get<int>(), parent, node));
             }
             parent = node;
         }
@@ -61,8 +61,8 @@ std::vector<int> from_the_top(const Document& document, const std::vector<int>& 
         reached.pop_back();
         found[static_cast<std::size_t>(node)] = true;
         order.push_back(node);
-        for (const Json& child : children_of(document, node).items()) {
-            reached.push_back(child.whole<int>());
+        for (const Json& child : children_of(document, node)) {
+            reached.push_back(child.get<int>());
         }
     }
     if (const auto lost = std::ranges::find(found, false); lost != found.end()) {
@@ -77,7 +77,7 @@ std::vector<int> roots_of_scene(Document& document) {
     const std::vector<int> parents = find_parents(document);
     const Json& listed = list_in(default_scene(document), "nodes");
     std::vector<bool> is_listed(parents.size(), false);
-    for (const Json& node : listed.items()) is_listed[node.whole<std::size_t>()] = true;
+    for (const Json& node : listed) is_listed[node.get<std::size_t>()] = true;
     std::vector<bool> is_there(parents.size(), false);  // by an ancestor, or because it was added
     for (const int node : from_the_top(document, parents)) {
         const int parent = parents[static_cast<std::size_t>(node)];
@@ -87,12 +87,12 @@ std::vector<int> roots_of_scene(Document& document) {
     }
     std::vector<int> roots;
     bool is_odd = false;
-    for (const Json& node : listed.items()) {
-        const auto i = node.whole<std::size_t>();
+    for (const Json& node : listed) {
+        const auto i = node.get<std::size_t>();
         is_odd = is_odd || is_there[i] || parents[i] >= 0;
         if (is_there[i]) continue;
         is_there[i] = true;
-        roots.push_back(node.whole<int>());
+        roots.push_back(node.get<int>());
     }
     if (is_odd) {
         document.warnings.emplace_back(
@@ -113,7 +113,7 @@ bool is_finite(const Transform& transform) {
 std::vector<Transform> read_matrix(const Json& numbers) {
     glm::dmat4 matrix;
     for (int i = 0; i < 16; ++i) {
-        matrix[i / 4][i % 4] = numbers[static_cast<std::size_t>(i)].number();
+        matrix[i / 4][i % 4] = numbers[static_cast<std::size_t>(i)].get<double>();
     }
     if (matrix[0][3] != 0.0 || matrix[1][3] != 0.0 || matrix[2][3] != 0.0 || matrix[3][3] != 1.0) {
         throw SceneError("its matrix does not end in a row of 0 0 0 1");
@@ -140,34 +140,34 @@ std::vector<Transform> read_transforms(const Json& node) {
 
 Camera read_camera(const Json& source, int index) {
     constexpr float endless = std::numeric_limits<float>::infinity();
-    const bool is_perspective = source.at("type").is("perspective");
-    const Json& lens = source.at(source.at("type").text());
+    const bool is_perspective = source.at("type") == "perspective";
+    const Json& lens = source.at(source.at("type").get<std::string>());
     Camera camera;
-    camera.near_plane = number_in(lens, "znear", 0.0F);
-    camera.far_plane = number_in(lens, "zfar", endless);
+    camera.near_plane = value_in(lens, "znear", 0.0F);
+    camera.far_plane = value_in(lens, "zfar", endless);
     if (camera.far_plane <= camera.near_plane) {
         throw SceneError(fmt::format("camera {}: its zfar of {} is not beyond its znear of {}", index,
                                      camera.far_plane, camera.near_plane));
     }
     if (is_perspective) {
-        camera.vertical_fov = number_in(lens, "yfov", 0.0F);
+        camera.vertical_fov = value_in(lens, "yfov", 0.0F);
     } else {
         camera.projection = Camera::Projection::orthographic;
-        camera.half_height = number_in(lens, "ymag", 0.0F);
+        camera.half_height = value_in(lens, "ymag", 0.0F);
     }
     return camera;
 }
 
 /// Index of the node's light; -1 for none.
 int light_of(const Json& node) {
-    return index_in(node, "extensions/KHR_lights_punctual/light");
+    return index_in(node, "extensions.KHR_lights_punctual.light");
 }
 
-constexpr std::string_view all_lights = "extensions/KHR_lights_punctual/lights";
+constexpr std::string_view all_lights = "extensions.KHR_lights_punctual.lights";
 
 std::string name_of(const Document& document, int index) {
     const Json& node = document.at("nodes", index);
-    if (const Json* const name = node.find("name")) return name->text();
+    if (const Json* const name = find_member(node, "name")) return *name;
     const auto name_in = [&](std::string_view list, int i) {
         return i < 0 ? std::string() : text_in(document.at(list, i), "name");
     };
@@ -226,7 +226,7 @@ glm::quat unit_rotation(const glm::dvec4& parts) {
 
 const Json& default_scene(const Document& document) {
     if (document.all("scenes").empty()) throw SceneError("it has no scene");
-    return document.at("scenes", number_in(document.json, "scene", 0));
+    return document.at("scenes", value_in(document.json, "scene", 0));
 }
 
 std::vector<StagedEntity> read_nodes(Document& document, ImportBudget& budget, const Progress& progress) {
@@ -259,7 +259,7 @@ std::vector<StagedEntity> read_nodes(Document& document, ImportBudget& budget, c
                           [&] { return add_instances(entities, document, json, counted, budget); });
         const Json& children = children_of(document, node);
         for (std::size_t i = children.size(); i-- > 0;) {
-            ahead.push_back({children[i].whole<int>(), level + 1, parent});
+            ahead.push_back({children[i].get<int>(), level + 1, parent});
         }
     }
     return entities;

@@ -8,6 +8,8 @@
 #include <optional>
 #include <string>
 #include <string_view>
+#include <tuple>
+#include <utility>
 #include <vector>
 
 #include <fmt/format.h>
@@ -25,7 +27,8 @@ using Problem = std::optional<std::string>;
 using Check = std::function<Problem(const Json& value, const Json& document)>;
 
 struct Rule {
-    /// Members joined by dots; `[]` means each item of an array, `{}` each member of an object.
+    /// Members joined by dots, or by `|` where one rule holds for several; `[]` means each item of an array,
+    /// `{}` each member of an object.
     std::string path;
     Check check;
 };
@@ -45,12 +48,12 @@ constexpr Range field_of_view{.lowest = std::numeric_limits<float>::min(), .high
 constexpr Range inner_cone{.lowest = 0.0, .highest = 1.570797};
 constexpr Range outer_cone{.lowest = std::numeric_limits<float>::min(), .highest = 1.570797};
 
-constexpr std::uint64_t any_size = std::numeric_limits<std::int64_t>::max();
-constexpr std::uint64_t most_elements = std::numeric_limits<std::uint32_t>::max();
+constexpr std::int64_t any_size = std::numeric_limits<std::int64_t>::max();
+constexpr std::int64_t most_elements = std::numeric_limits<std::uint32_t>::max();
 
 Problem check_number(const Json& value, const Range& range) {
     if (!value.is_number()) return "is not a number";
-    const auto number = value.number();
+    const auto number = value.get<double>();
     if (number < range.lowest || number > range.highest) {
         return fmt::format("is {}, which is out of range", number);
     }
@@ -64,36 +67,34 @@ Check number(Range range) {
 /// KHR_materials_ior: at least 1, or 0.
 Check index_of_refraction() {
     return [](const Json& value, const Json&) {
-        const bool is_0 = value.is_number() && value.number() == 0.0;
-        return is_0 ? Problem{} : check_number(value, {.lowest = 1.0});
+        return value == 0.0 ? Problem{} : check_number(value, {.lowest = 1.0});
     };
 }
 
 Check numbers(std::size_t length, Range range) {
     return [length, range](const Json& value, const Json&) -> Problem {
         if (!value.is_array() || value.size() != length) return fmt::format("is not {} numbers", length);
-        for (const Json& item : value.items()) {
+        for (const Json& item : value) {
             if (Problem error = check_number(item, range)) return "holds a member that " + *error;
         }
         return {};
     };
 }
 
-Check whole(std::uint64_t lowest, std::uint64_t highest) {
+/// `lowest` is not negative. Numbers beyond 63 bits become negative ones.
+Check whole(std::int64_t lowest, std::int64_t highest) {
     return [lowest, highest](const Json& value, const Json&) -> Problem {
-        if (!value.is_whole()) return "is not a whole number";
-        if (!value.is_not_negative() || value.whole<std::uint64_t>() < lowest ||
-            value.whole<std::uint64_t>() > highest) {
-            return fmt::format("is {}, which is out of range", value.dump());
-        }
-        return {};
+        if (!value.is_number_integer()) return "is not a whole number";
+        const auto number = value.get<std::int64_t>();
+        const bool fits = number >= lowest && number <= highest;
+        return fits ? Problem{} : fmt::format("is {}, which is out of range", value.dump());
     };
 }
 
 Check stride() {
     return [](const Json& value, const Json& document) -> Problem {
         if (Problem error = whole(4, 252)(value, document)) return error;
-        if (value.whole<int>() % 4 != 0) return fmt::format("is {}, not a multiple of 4", value.whole<int>());
+        if (value.get<int>() % 4 != 0) return fmt::format("is {}, not a multiple of 4", value.get<int>());
         return {};
     };
 }
@@ -127,7 +128,7 @@ Check not_empty(const char* plural) {
 /// Checks for a member that is named like the value of "type", if that is one of `kinds`.
 Check has_its_kind(std::vector<std::string_view> kinds) {
     return [kinds = std::move(kinds)](const Json& value, const Json&) -> Problem {
-        const std::string& kind = value.at("type").text();
+        const auto kind = value.at("type").get<std::string>();
         const bool needed = std::ranges::find(kinds, kind) != kinds.end();
         return needed && !value.contains(kind) ? fmt::format("has no \"{}\"", kind) : Problem{};
     };
@@ -136,7 +137,7 @@ Check has_its_kind(std::vector<std::string_view> kinds) {
 Check version() {
     return [](const Json& value, const Json&) -> Problem {
         if (!value.is_string()) return "is not a string";
-        const auto& number = value.text();
+        const auto number = value.get<std::string>();
         return number.starts_with("2.") ? Problem{}
                                         : fmt::format("is \"{}\"; only 2.0 is read", readable(number));
     };
@@ -145,7 +146,7 @@ Check version() {
 Check one_of(std::vector<std::string_view> names) {
     return [names = std::move(names)](const Json& value, const Json&) -> Problem {
         if (!value.is_string()) return "is not a string";
-        const auto& name = value.text();
+        const auto name = value.get<std::string>();
         const bool known = std::ranges::find(names, name) != names.end();
         return known ? Problem{}
                      : fmt::format("is \"{}\", not one of {}", readable(name), fmt::join(names, ", "));
@@ -155,75 +156,56 @@ Check one_of(std::vector<std::string_view> names) {
 /// Checks for an index into the array at `path` of the document, which messages call `plural`.
 Check index_into(const char* path, const char* plural) {
     return [path, plural](const Json& value, const Json& document) -> Problem {
-        if (!value.is_whole()) return "is not an index";
-        const Json* const list = document.find_path(path);
-        const std::size_t size = list ? list->size() : 0;
-        if (!value.is_not_negative() || value.whole<std::uint64_t>() >= size) {
-            return fmt::format("is {}, but there are {} {}", value.dump(), size, plural);
-        }
-        return {};
+        if (!value.is_number_integer()) return "is not an index";
+        const std::size_t size = list_in(document, path).size();
+        const auto index = value.get<std::int64_t>();
+        const bool fits = index >= 0 && static_cast<std::size_t>(index) < size;
+        return fits ? Problem{} : fmt::format("is {}, but there are {} {}", value.dump(), size, plural);
     };
 }
 
-/// The rules of a textureInfo, a texture with the coordinates that are used for it.
-void add_texture_rules(std::vector<Rule>& rules, const std::string& path, const Check& texture) {
-    const std::string transform = path + ".extensions.KHR_texture_transform";
-    const Check set = whole(0, std::numeric_limits<int>::max());
-    rules.push_back({path, has({"index"})});
-    rules.push_back({path + ".index", texture});
-    rules.push_back({path + ".texCoord", set});
-    rules.push_back({transform + ".offset", numbers(2, any)});
-    rules.push_back({transform + ".rotation", number(any)});
-    rules.push_back({transform + ".scale", numbers(2, any)});
-    rules.push_back({transform + ".texCoord", set});
+Check index_into(const char* list) {
+    return index_into(list, list);
 }
 
 std::vector<Rule> rules() {
-    const Check accessor = index_into("accessors", "accessors");
-    const Check buffer = index_into("buffers", "buffers");
+    const Check accessor = index_into("accessors");
+    const Check buffer = index_into("buffers");
     const Check buffer_view = index_into("bufferViews", "buffer views");
-    const Check camera = index_into("cameras", "cameras");
-    const Check image = index_into("images", "images");
-    const Check light = index_into("extensions/KHR_lights_punctual/lights", "lights");
-    const Check material = index_into("materials", "materials");
-    const Check mesh = index_into("meshes", "meshes");
-    const Check node = index_into("nodes", "nodes");
-    const Check sampler = index_into("samplers", "samplers");
-    const Check scene = index_into("scenes", "scenes");
-    const Check skin = index_into("skins", "skins");
-    const Check texture = index_into("textures", "textures");
-    const Check size = whole(0, any_size);
+    const Check image = index_into("images");
+    const Check node = index_into("nodes");
+    const Check texture = index_into("textures");
     const Check index = whole(0, std::numeric_limits<int>::max());
 
     const std::string meshopt = "bufferViews.[].extensions.EXT_meshopt_compression";
     const std::string draco = "meshes.[].primitives.[].extensions.KHR_draco_mesh_compression";
+    const std::string lights = "extensions.KHR_lights_punctual.lights.[]";
+    const std::string environment = "scenes.[].extensions.CANDELA_environment";
 
     std::vector<Rule> all = {
         {"asset", has({"version"})},
         {"asset.version", version()},
-        {"extensionsUsed.[]", text()},
-        {"extensionsRequired.[]", text()},
+        {"extensionsUsed|extensionsRequired.[]", text()},
+        {"images|materials|meshes|cameras|nodes|animations.[].name", text()},
+        {"buffers|images.[].uri", text()},
 
         {"buffers.[]", has({"byteLength"})},
-        {"buffers.[].byteLength", whole(1, any_size)},
-        {"buffers.[].uri", text()},
         {"bufferViews.[]", has({"buffer", "byteLength"})},
+        {meshopt, has({"buffer", "byteLength", "byteStride", "count", "mode"})},
         {"bufferViews.[].buffer", buffer},
-        {"bufferViews.[].byteOffset", size},
-        {"bufferViews.[].byteLength", whole(1, any_size)},
+        {meshopt + ".buffer", buffer},
+        {"bufferViews|accessors.[].byteOffset", whole(0, any_size)},
+        {meshopt + ".byteOffset", whole(0, any_size)},
+        {"buffers|bufferViews.[].byteLength", whole(1, any_size)},
+        {meshopt + ".byteLength", whole(1, any_size)},
         {"bufferViews.[].byteStride", stride()},
         {"buffers.[].extensions.EXT_meshopt_compression.fallback", flag()},
-        {meshopt, has({"buffer", "byteLength", "byteStride", "count", "mode"})},
-        {meshopt + ".buffer", buffer},
-        {meshopt + ".byteOffset", size},
-        {meshopt + ".byteLength", whole(1, any_size)},
         {meshopt + ".byteStride", whole(1, 256)},
         {meshopt + ".count", whole(1, most_elements)},
         {meshopt + ".mode", one_of({"ATTRIBUTES", "TRIANGLES", "INDICES"})},
         {meshopt + ".filter", one_of({"NONE", "OCTAHEDRAL", "QUATERNION", "EXPONENTIAL"})},
         {"accessors.[]", has({"componentType", "count", "type"})},
-        {"accessors.[].bufferView", buffer_view},
-        {"accessors.[].byteOffset", size},
+        {"accessors|images.[].bufferView", buffer_view},
         {"accessors.[].componentType", whole(signed_byte, floating_point)},
         {"accessors.[].count", whole(1, most_elements)},
         {"accessors.[].type", one_of({"SCALAR", "VEC2", "VEC3", "VEC4", "MAT2", "MAT3", "MAT4"})},
@@ -231,23 +213,15 @@ std::vector<Rule> rules() {
         {"accessors.[].sparse", has({"count", "indices", "values"})},
         {"accessors.[].sparse.count", whole(1, std::numeric_limits<int>::max())},
         {"accessors.[].sparse.indices", has({"bufferView", "componentType"})},
-        {"accessors.[].sparse.indices.bufferView", buffer_view},
-        {"accessors.[].sparse.indices.byteOffset", index},
-        {"accessors.[].sparse.indices.componentType", index},
         {"accessors.[].sparse.values", has({"bufferView"})},
-        {"accessors.[].sparse.values.bufferView", buffer_view},
-        {"accessors.[].sparse.values.byteOffset", index},
+        {"accessors.[].sparse.indices|values.bufferView", buffer_view},
+        {"accessors.[].sparse.indices|values.byteOffset", index},
+        {"accessors.[].sparse.indices.componentType", index},
 
-        {"images.[].name", text()},
-        {"images.[].uri", text()},
-        {"images.[].bufferView", buffer_view},
-        {"samplers.[].wrapS", index},
-        {"samplers.[].wrapT", index},
-        {"textures.[].sampler", sampler},
+        {"samplers.[].wrapS|wrapT", index},
+        {"textures.[].sampler", index_into("samplers")},
         {"textures.[].source", image},
-        {"textures.[].extensions.EXT_texture_webp.source", image},
-        {"textures.[].extensions.KHR_texture_basisu.source", image},
-        {"materials.[].name", text()},
+        {"textures.[].extensions.EXT_texture_webp|KHR_texture_basisu.source", image},
         {"materials.[].doubleSided", flag()},
         {"materials.[].alphaMode", one_of({"OPAQUE", "MASK", "BLEND"})},
         {"materials.[].alphaCutoff", number(not_negative)},
@@ -255,8 +229,7 @@ std::vector<Rule> rules() {
         {"materials.[].normalTexture.scale", number(any)},
         {"materials.[].occlusionTexture.strength", number(unit)},
         {"materials.[].pbrMetallicRoughness.baseColorFactor", numbers(4, unit)},
-        {"materials.[].pbrMetallicRoughness.metallicFactor", number(unit)},
-        {"materials.[].pbrMetallicRoughness.roughnessFactor", number(unit)},
+        {"materials.[].pbrMetallicRoughness.metallicFactor|roughnessFactor", number(unit)},
         {"materials.[].extensions.KHR_materials_emissive_strength.emissiveStrength", number(not_negative)},
         {"materials.[].extensions.KHR_materials_ior.ior", index_of_refraction()},
         {"materials.[].extensions.KHR_materials_transmission.transmissionFactor", number(unit)},
@@ -264,68 +237,58 @@ std::vector<Rule> rules() {
         {"materials.[].extensions.KHR_materials_specular.specularColorFactor", numbers(3, not_negative)},
 
         {"meshes.[]", has({"primitives"})},
-        {"meshes.[].name", text()},
         {"meshes.[].primitives.[]", has({"attributes"})},
         {"meshes.[].primitives.[].attributes.{}", accessor},
         {"meshes.[].primitives.[].indices", accessor},
-        {"meshes.[].primitives.[].material", material},
+        {"meshes.[].primitives.[].material", index_into("materials")},
         {"meshes.[].primitives.[].mode", whole(0, 6)},
         {"meshes.[].primitives.[].targets.[].{}", accessor},
-        {"meshes.[].weights.[]", number(any)},
-
         {draco, has({"bufferView", "attributes"})},
         {draco + ".bufferView", buffer_view},
         {draco + ".attributes.{}", whole(0, most_elements)},
 
         {"cameras.[]", has({"type"})},
-        {"cameras.[].name", text()},
         {"cameras.[].type", one_of({"perspective", "orthographic"})},
         {"cameras.[]", has_its_kind({"perspective", "orthographic"})},
         {"cameras.[].perspective", has({"yfov", "znear"})},
         {"cameras.[].perspective.yfov", number(field_of_view)},
         {"cameras.[].perspective.znear", number(positive)},
-        {"cameras.[].perspective.zfar", number(positive)},
         {"cameras.[].orthographic", has({"xmag", "ymag", "znear", "zfar"})},
         {"cameras.[].orthographic.ymag", number(positive)},
         {"cameras.[].orthographic.znear", number(not_negative)},
-        {"cameras.[].orthographic.zfar", number(positive)},
+        {"cameras.[].perspective|orthographic.zfar", number(positive)},
 
         {"extensions.KHR_lights_punctual", has({"lights"})},
-        {"extensions.KHR_lights_punctual.lights.[]", has({"type"})},
-        {"extensions.KHR_lights_punctual.lights.[].name", text()},
-        {"extensions.KHR_lights_punctual.lights.[].type", text()},
-        {"extensions.KHR_lights_punctual.lights.[]", has_its_kind({"spot"})},
-        {"extensions.KHR_lights_punctual.lights.[].color", numbers(3, unit)},
-        {"extensions.KHR_lights_punctual.lights.[].intensity", number(not_negative)},
-        {"extensions.KHR_lights_punctual.lights.[].range", number(positive)},
-        {"extensions.KHR_lights_punctual.lights.[].spot.innerConeAngle", number(inner_cone)},
-        {"extensions.KHR_lights_punctual.lights.[].spot.outerConeAngle", number(outer_cone)},
+        {lights, has({"type"})},
+        {lights + ".name|type", text()},
+        {lights, has_its_kind({"spot"})},
+        {lights + ".color", numbers(3, unit)},
+        {lights + ".intensity", number(not_negative)},
+        {lights + ".range", number(positive)},
+        {lights + ".spot.innerConeAngle", number(inner_cone)},
+        {lights + ".spot.outerConeAngle", number(outer_cone)},
+        {lights + ".extensions.CANDELA_light.castsShadow", flag()},
 
-        {"extensions.KHR_lights_punctual.lights.[].extensions.CANDELA_light.castsShadow", flag()},
-
-        {"nodes.[].name", text()},
-        {"nodes.[].mesh", mesh},
-        {"nodes.[].skin", skin},
-        {"nodes.[].weights.[]", number(any)},
-        {"nodes.[].camera", camera},
+        {"nodes.[].mesh", index_into("meshes")},
+        {"nodes.[].skin", index_into("skins")},
+        {"nodes.[].camera", index_into("cameras")},
         {"nodes.[].children.[]", node},
-        {"nodes.[].translation", numbers(3, any)},
+        {"nodes.[].translation|scale", numbers(3, any)},
         {"nodes.[].rotation", numbers(4, any)},
-        {"nodes.[].scale", numbers(3, any)},
         {"nodes.[].matrix", numbers(16, any)},
         {"nodes.[].extensions.KHR_lights_punctual", has({"light"})},
-        {"nodes.[].extensions.KHR_lights_punctual.light", light},
+        {"nodes.[].extensions.KHR_lights_punctual.light",
+         index_into("extensions.KHR_lights_punctual.lights", "lights")},
         {"nodes.[].extensions.EXT_mesh_gpu_instancing", has({"attributes"})},
         {"nodes.[].extensions.EXT_mesh_gpu_instancing.attributes.{}", accessor},
+        {"meshes|nodes.[].weights.[]", number(any)},
         {"skins.[]", has({"joints"})},
         {"skins.[].joints", not_empty("joints")},
         {"skins.[].joints.[]", node},
         {"skins.[].inverseBindMatrices", accessor},
         {"animations.[]", has({"channels", "samplers"})},
-        {"animations.[].name", text()},
         {"animations.[].samplers.[]", has({"input", "output"})},
-        {"animations.[].samplers.[].input", accessor},
-        {"animations.[].samplers.[].output", accessor},
+        {"animations.[].samplers.[].input|output", accessor},
         {"animations.[].samplers.[].interpolation", one_of({"STEP", "LINEAR", "CUBICSPLINE"})},
         {"animations.[].channels.[]", has({"sampler", "target"})},
         {"animations.[].channels.[].sampler", index},
@@ -333,17 +296,22 @@ std::vector<Rule> rules() {
         {"animations.[].channels.[].target.node", node},
         {"animations.[].channels.[].target.path", text()},
         {"scenes.[].nodes.[]", node},
-        {"scenes.[].extensions.CANDELA_environment.radiance", numbers(3, not_negative)},
-        {"scenes.[].extensions.CANDELA_environment.bufferView", buffer_view},
-        {"scenes.[].extensions.CANDELA_environment.name", text()},
-        {"scenes.[].extensions.CANDELA_environment.rotation", number(any)},
-        {"scenes.[].extensions.CANDELA_environment.uri", text()},
-        {"scene", scene},
+        {environment + ".name|uri", text()},
+        {environment + ".radiance", numbers(3, not_negative)},
+        {environment + ".bufferView", buffer_view},
+        {environment + ".rotation", number(any)},
+        {"scene", index_into("scenes")},
     };
-    for (const char* use :
-         {"pbrMetallicRoughness.baseColorTexture", "pbrMetallicRoughness.metallicRoughnessTexture",
-          "normalTexture", "occlusionTexture", "emissiveTexture"}) {
-        add_texture_rules(all, fmt::format("materials.[].{}", use), texture);
+    for (const std::string use :
+         {"materials.[].pbrMetallicRoughness.baseColorTexture|metallicRoughnessTexture",
+          "materials.[].normalTexture|occlusionTexture|emissiveTexture"}) {
+        const std::string transform = use + ".extensions.KHR_texture_transform";
+        all.push_back({use, has({"index"})});
+        all.push_back({use + ".index", texture});
+        all.push_back({use + ".texCoord", index});
+        all.push_back({transform + ".offset|scale", numbers(2, any)});
+        all.push_back({transform + ".rotation", number(any)});
+        all.push_back({transform + ".texCoord", index});
     }
     return all;
 }
@@ -362,6 +330,12 @@ struct Place {
     }
 };
 
+/// The text before the first `separator`, and the one after it.
+std::pair<std::string_view, std::string_view> split(std::string_view text, char separator) {
+    const std::size_t at = std::min(text.find(separator), text.size());
+    return {text.substr(0, at), text.substr(std::min(at + 1, text.size()))};
+}
+
 /// Applies the rule's check to each value that `path`, the rest of the rule's path, leads to from `value`.
 void apply(const Rule& rule, std::string_view path, const Json& value, const Place& place,
            const Json& document) {
@@ -369,10 +343,7 @@ void apply(const Rule& rule, std::string_view path, const Json& value, const Pla
         if (const Problem error = rule.check(value, document)) throw SceneError(place.name() + ' ' + *error);
         return;
     }
-    const std::size_t dot = path.find('.');
-    const std::string_view step = path.substr(0, dot);
-    const std::string_view rest = dot == std::string_view::npos ? "" : path.substr(dot + 1);
-
+    const auto [step, rest] = split(path, '.');
     const bool items = step == "[]";
     if (items != value.is_array() || (!items && !value.is_object())) {
         throw SceneError(fmt::format("{} is not an {}", place.name(), items ? "array" : "object"));
@@ -382,11 +353,16 @@ void apply(const Rule& rule, std::string_view path, const Json& value, const Pla
             apply(rule, rest, value[i], {.parent = &place, .item = i}, document);
         }
     } else if (step == "{}") {
-        for (const auto& [key, member] : value.members()) {
+        for (const auto& [key, member] : value.items()) {
             apply(rule, rest, member, {.parent = &place, .member = key}, document);
         }
-    } else if (const Json* const member = value.find(step)) {
-        apply(rule, rest, *member, {.parent = &place, .member = step}, document);
+    } else {
+        for (auto [name, others] = split(step, '|'); !name.empty();
+             std::tie(name, others) = split(others, '|')) {
+            const auto member = value.find(name);
+            if (member == value.end()) continue;
+            apply(rule, rest, *member, {.parent = &place, .member = name}, document);
+        }
     }
 }
 

@@ -1,6 +1,6 @@
 #pragma once
 
-#include "engine/json/json.hpp"
+#include "engine/import/gltf_values.hpp"
 
 namespace candela::gltf {
 

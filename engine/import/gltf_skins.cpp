@@ -14,7 +14,7 @@ namespace {
 
 ReadSkin read_skin(const Document& document, const Json& source, ImportBudget& budget) {
     ReadSkin skin;
-    for (const Json& joint : source.at("joints").items()) skin.joints.push_back(joint.whole<int>());
+    for (const Json& joint : source.at("joints")) skin.joints.push_back(joint.get<int>());
     const int matrices = index_in(source, "inverseBindMatrices");
     if (matrices < 0) return skin;
     const std::size_t count = element_count(document, matrices);
@@ -31,14 +31,6 @@ ReadSkin read_skin(const Document& document, const Json& source, ImportBudget& b
 /// The accessor of "JOINTS_0" and the like; -1 for none.
 int accessor_of(const Json& primitive, const char* kind, std::size_t set) {
     return index_in(primitive.at("attributes"), fmt::format("{}_{}", kind, set));
-}
-
-void check_count(const Document& document, const Json& primitive, int accessor, const char* plural) {
-    const std::size_t positions = element_count(document, index_in(primitive, "attributes/POSITION"));
-    const std::size_t count = element_count(document, accessor);
-    if (count != positions) {
-        throw SceneError(fmt::format("it has {} positions, but {} {}", positions, count, plural));
-    }
 }
 
 }  // namespace

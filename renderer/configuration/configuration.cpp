@@ -7,15 +7,19 @@
 #include <limits>
 #include <map>
 #include <set>
+#include <stdexcept>
 #include <type_traits>
 
 #include <fmt/format.h>
+#include <nlohmann/json.hpp>
 
-#include "engine/json/json.hpp"
+#include "engine/read_json.hpp"
 #include "engine/readable.hpp"
 
 namespace candela {
 namespace {
+
+using Json = nlohmann::json;
 
 constexpr auto path_choices = [] {
     std::array<Choice, shading_paths.size()> choices;
@@ -46,8 +50,6 @@ constexpr std::array<Choice, 3> curve_choices{
     {{"filmic", "Narkowicz' curve: strong contrast, each channel by itself"},
      {"neutral", "Khronos PBR Neutral: base colours stay as they are, only highlights are compressed"},
      {"aces", "Hill's fit to ACES, as in many glTF viewers: strong contrast, highlights fade to white"}}};
-
-constexpr double infinity = std::numeric_limits<double>::infinity();
 
 // The JSON value of a setting of each type.
 
@@ -82,25 +84,25 @@ using Fault = std::optional<std::string>;
 
 Fault read(const Json& json, const Range& /*range*/, bool& value) {
     if (!json.is_boolean()) return "is not true or false";
-    value = json.flag();
+    value = json.get<bool>();
     return {};
 }
 Fault read(const Json& json, const Range& range, std::uint32_t& value) {
-    if (!json.is_whole() || !is_within(json.number(), range)) {
+    if (!json.is_number_integer() || !is_within(json.get<double>(), range)) {
         return fmt::format("is not a whole number from {} to {}", range.least, range.most);
     }
-    value = json.whole<std::uint32_t>();
+    value = json.get<std::uint32_t>();
     return {};
 }
 Fault read(const Json& json, const Range& range, float& value) {
-    if (!json.is_number() && !json.is("infinity")) return "is not a number";
-    const auto number = static_cast<float>(json.is_number() ? json.number() : infinity);
+    if (!json.is_number() && json != "infinity") return "is not a number";
+    const float number = json.is_number() ? json.get<float>() : std::numeric_limits<float>::infinity();
     if (!is_within(number, range)) return fmt::format("is not from {} to {}", range.least, range.most);
     value = number;
     return {};
 }
 Fault read(const Json& json, const Range& range, std::optional<float>& value) {
-    if (json.is("auto")) {
+    if (json == "auto") {
         value.reset();
         return {};
     }
@@ -115,7 +117,9 @@ std::string names_of(std::span<const Choice> choices) {
 }
 template <class Enum>
 requires std::is_enum_v<Enum> Fault read(const Json& json, const Range& /*range*/, Enum& value) {
-    const std::string given = json.is_string() ? json.text() : json.is_number() ? json.dump() : "";
+    const std::string given = json.is_string()   ? json.get<std::string>()
+                              : json.is_number() ? json.dump()
+                                                 : "";
     const std::span<const Choice> choices = choices_of(value);
     const auto chosen = std::ranges::find(choices, given, &Choice::name);
     if (chosen == choices.end()) return fmt::format("is not one of {}", names_of(choices));
@@ -139,7 +143,7 @@ KnownMembers known_members() {
 /// Adds what is wrong with the names of an object's members.
 void check_names(const Json& object, std::string_view group, const KnownMembers& known,
                  std::vector<std::string>& errors) {
-    for (const auto& [name, value] : object.members()) {
+    for (const auto& [name, value] : object.items()) {
         const std::string path = fmt::format("{}{}{}", group, group.empty() ? "" : ".", readable(name));
         const bool is_group = group.empty() && known.contains(name);
         if (!known.at(group).contains(name)) {
@@ -157,8 +161,7 @@ std::vector<std::string> read_members(const Json& json, Configuration& configura
     if (!json.is_object()) return {"not a JSON object"};
     std::vector<std::string> errors;
     for_each_setting(configuration, [&](const Setting& setting, auto& value) {
-        const Json* const object = setting.group().empty() ? &json : json.find(setting.group());
-        const Json* const member = object ? object->find(setting.name()) : nullptr;
+        const Json* const member = find_member(json, setting.path);
         if (const Fault fault = member ? read(*member, setting.range, value) : Fault()) {
             errors.push_back(fmt::format("{}: {}", setting.path, *fault));
         }
@@ -189,9 +192,9 @@ ConfigurationResult read_configuration(std::string_view text, const Configuratio
     ConfigurationResult result;
     Configuration configuration = base;
     try {
-        result.errors = first_ten(read_members(Json::parse(text), configuration));
-    } catch (const JsonError& error) {
-        result.errors = {readable(error.what())};
+        result.errors = first_ten(read_members(parse_json(text), configuration));
+    } catch (const std::runtime_error& error) {
+        result.errors = {error.what()};
     }
     // Rejected members kept their old values; this adds errors that depend on several values.
     const std::vector<std::string> of_values = validate(configuration);
@@ -201,9 +204,9 @@ ConfigurationResult read_configuration(std::string_view text, const Configuratio
 }
 
 std::string write_configuration(const Configuration& configuration) {
-    Json json;
+    nlohmann::ordered_json json;
     for_each_setting(configuration, [&](const Setting& setting, const auto& value) {
-        Json& object = setting.group().empty() ? json : json[setting.group()];
+        auto& object = setting.group().empty() ? json : json[setting.group()];
         object[setting.name()] = as_json(value);
     });
     return json.dump(2);

@@ -1,11 +1,14 @@
 #include <candela/tools/run_report.hpp>
 
+#include <nlohmann/json.hpp>
+
 #include <candela/version.hpp>
-#include "engine/json/json.hpp"
 
 namespace candela::tools {
 
 namespace {
+
+using Json = nlohmann::ordered_json;
 
 Json to_json(const glm::dvec3& rgb) {
     return {rgb.r, rgb.g, rgb.b};
@@ -84,7 +87,7 @@ std::string to_json(const RunReport& report) {
                        {"lights", to_json(report.state.lights)},
                        {"memory", to_json(report.state.memory)}};
     // A path may contain bytes that are not valid UTF-8.
-    return json.dump(2, Json::Faulty::replaced) + "\n";
+    return json.dump(2, ' ', false, Json::error_handler_t::replace) + "\n";
 }
 
 std::vector<EnergyLine> energy_lines(const EnergyAccount& flux) {

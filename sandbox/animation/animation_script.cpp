@@ -13,6 +13,7 @@
 #include <fmt/ranges.h>
 #include <glm/geometric.hpp>
 #include <glm/trigonometric.hpp>
+#include <nlohmann/json.hpp>
 
 #include <candela/tools/output_file.hpp>
 #include "sandbox/candela_private.hpp"
@@ -24,6 +25,7 @@ namespace candela::sandbox {
 namespace {
 
 namespace fs = std::filesystem;
+using Json = nlohmann::json;
 
 [[noreturn]] void fail(const std::string& place, std::string_view error) {
     throw std::runtime_error(place.empty() ? std::string(error) : fmt::format("{}: {}", place, error));
@@ -39,15 +41,15 @@ std::string element_of(const std::string& place, std::size_t index) {
 }
 
 const Json& require(const Json& object, const std::string& place, const char* member) {
-    const Json* found = object.find(member);
-    if (found == nullptr) fail(member_of(place, member), "is missing");
+    const Json* const found = find_member(object, member);
+    if (!found) fail(member_of(place, member), "is missing");
     return *found;
 }
 
 /// Checks that it is an object with no members other than `known`.
 void check_object(const Json& json, const std::string& place, std::initializer_list<std::string_view> known) {
     if (!json.is_object()) fail(place, "is not an object");
-    for (const auto& [member, value] : json.members()) {
+    for (const auto& [member, value] : json.items()) {
         if (std::find(known.begin(), known.end(), member) == known.end()) {
             fail(member_of(place, readable(member)), "is unknown");
         }
@@ -59,24 +61,24 @@ void check_array(const Json& json, const std::string& place, std::size_t size, s
 }
 
 int read_whole(const Json& json, const std::string& place, int least, int most) {
-    const bool fits = json.is_whole() && json.number() >= least && json.number() <= most;
+    const bool fits = json.is_number_integer() && json.get<double>() >= least && json.get<double>() <= most;
     if (!fits) fail(place, fmt::format("is not a whole number from {} to {}", least, most));
-    return json.whole<int>();
+    return json.get<int>();
 }
 
 bool read_bool(const Json& json, const std::string& place) {
     if (!json.is_boolean()) fail(place, "is not true or false");
-    return json.flag();
+    return json.get<bool>();
 }
 
 std::string read_text(const Json& json, const std::string& place) {
-    if (!json.is_string() || json.text().empty()) fail(place, "is not a word");
-    return json.text();
+    if (!json.is_string() || json == "") fail(place, "is not a word");
+    return json;
 }
 
 float read_float(const Json& json, const std::string& place) {
     if (!json.is_number()) fail(place, "is not a number");
-    const double number = json.number();
+    const auto number = json.get<double>();
     // Converting a number outside the range of float would give infinity.
     if (std::abs(number) > std::numeric_limits<float>::max()) fail(place, "is too large");
     return static_cast<float>(number);
@@ -129,9 +131,9 @@ glm::quat read_rotation(const Json& json, const std::string& place) {
 }
 
 Interpolation read_interpolation(const Json& json, const std::string& place) {
-    if (json.is("linear")) return Interpolation::linear;
-    if (json.is("step")) return Interpolation::step;
-    if (json.is("smooth")) return Interpolation::smooth;
+    if (json == "linear") return Interpolation::linear;
+    if (json == "step") return Interpolation::step;
+    if (json == "smooth") return Interpolation::smooth;
     fail(place, "is not one of linear, step, smooth");
 }
 
@@ -139,13 +141,13 @@ Interpolation read_interpolation(const Json& json, const std::string& place) {
 template <class T>
 Keys<T> read_keys(const Json& track, const std::string& track_place, const char* member, int frames,
                   T (*read_value)(const Json&, const std::string&)) {
-    const Json* json = track.find(member);
-    if (json == nullptr) return {};
+    const Json* const json = find_member(track, member);
+    if (!json) return {};
     const std::string place = member_of(track_place, member);
     if (!json->is_array() || json->empty()) fail(place, "is not a list of keys");
     Keys<T> keys;
     keys.reserve(json->size());
-    for (const Json& pair : json->items()) {
+    for (const Json& pair : *json) {
         const std::string key_place = element_of(place, keys.size());
         check_array(pair, key_place, 2, "a pair of a frame and a value");
         const int frame = read_whole(pair[0], element_of(key_place, 0), 0, frames);
@@ -163,7 +165,7 @@ Track read_track(const Json& json, const std::string& place, int frames) {
         {"node", "interpolation", "translation", "rotation", "scale", "intensity", "colour", "enabled"});
     Track track;
     track.node = read_text(require(json, place, "node"), member_of(place, "node"));
-    if (const Json* interpolation = json.find("interpolation")) {
+    if (const Json* const interpolation = find_member(json, "interpolation")) {
         track.interpolation = read_interpolation(*interpolation, member_of(place, "interpolation"));
     }
     track.translation = read_keys(json, place, "translation", frames, read_vector);
@@ -180,7 +182,7 @@ std::vector<Track> read_tracks(const Json& json, int frames) {
     std::vector<Track> tracks;
     tracks.reserve(json.size());
     std::set<std::string> nodes;
-    for (const Json& track : json.items()) {
+    for (const Json& track : json) {
         const std::string place = element_of("tracks", tracks.size());
         tracks.push_back(read_track(track, place, frames));
         const std::string& node = tracks.back().node;
@@ -189,14 +191,6 @@ std::vector<Track> read_tracks(const Json& json, int frames) {
         }
     }
     return tracks;
-}
-
-Json parse(std::string_view text) {
-    try {
-        return Json::parse(text);
-    } catch (const JsonError& error) {
-        throw std::runtime_error(readable(error.what()));
-    }
 }
 
 /// The names of the shipped scripts, in alphabetical order.
@@ -222,13 +216,13 @@ fs::path find_script(const fs::path& file_or_name) {
 }  // namespace
 
 Script read_script(std::string_view text) {
-    const Json json = parse(text);
+    const Json json = parse_json(text);
     if (!json.is_object()) fail("", "not a JSON object");
     check_object(json, "", {"scene", "frames", "loop", "tracks"});
     Script script;
     script.frames = read_whole(require(json, "", "frames"), "frames", 1, std::numeric_limits<int>::max());
-    if (const Json* scene = json.find("scene")) script.scene = read_text(*scene, "scene");
-    if (const Json* loop = json.find("loop")) script.loop = read_bool(*loop, "loop");
+    if (const Json* const scene = find_member(json, "scene")) script.scene = read_text(*scene, "scene");
+    if (const Json* const loop = find_member(json, "loop")) script.loop = read_bool(*loop, "loop");
     script.tracks = read_tracks(require(json, "", "tracks"), script.frames);
     return script;
 }

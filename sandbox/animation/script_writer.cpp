@@ -7,6 +7,7 @@
 
 #include <fmt/format.h>
 #include <fmt/ranges.h>
+#include <nlohmann/json.hpp>
 
 #include <candela/tools/output_file.hpp>
 #include "sandbox/candela_private.hpp"
@@ -17,6 +18,7 @@ namespace candela::sandbox {
 namespace {
 
 namespace fs = std::filesystem;
+using Json = nlohmann::json;
 using Lines = std::vector<std::string>;
 
 Json to_json(float number) {
@@ -29,17 +31,17 @@ Json to_json(bool flag) {
 }
 
 Json to_json(const glm::vec3& vector) {
-    return Json::array({to_json(vector.x), to_json(vector.y), to_json(vector.z)});
+    return {to_json(vector.x), to_json(vector.y), to_json(vector.z)};
 }
 
 Json to_json(const glm::quat& rotation) {
-    return Json::array({to_json(rotation.x), to_json(rotation.y), to_json(rotation.z), to_json(rotation.w)});
+    return {to_json(rotation.x), to_json(rotation.y), to_json(rotation.z), to_json(rotation.w)};
 }
 
 std::string text(const std::string& words) {
     try {
         return Json(words).dump();
-    } catch (const JsonError&) {
+    } catch (const Json::exception&) {
         throw std::runtime_error("a name is not UTF-8");
     }
 }
@@ -60,7 +62,7 @@ template <class T>
 void add_keys(const char* member, const Keys<T>& keys, Lines& lines) {
     if (keys.empty()) return;
     Json list = Json::array();
-    for (const Key<T>& key : keys) list.push_back(Json::array({Json(key.frame), to_json(key.value)}));
+    for (const Key<T>& key : keys) list.push_back({key.frame, to_json(key.value)});
     lines.push_back(fmt::format(R"(      "{}": {})", member, list.dump()));
 }
 

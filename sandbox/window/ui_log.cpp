@@ -5,6 +5,7 @@
 #include <utility>
 
 #include <fmt/format.h>
+#include <nlohmann/json.hpp>
 
 #include "sandbox/candela_private.hpp"
 #include "sandbox/command_line/choose_configuration.hpp"
@@ -13,6 +14,8 @@
 namespace candela::sandbox {
 
 namespace {
+
+using Json = nlohmann::json;
 
 Json to_json(const Rectangle& at) {
     return {at.corner.x, at.corner.y, at.size.x, at.size.y};
@@ -68,7 +71,7 @@ Json lasting(const SessionState& state, const UiFrame& frame) {
               {"show", to_string(app.configuration.show)},
               {"compare", to_string(app.comparison.mode)},
               {"view", to_json(state.selection.resource)},
-              {"errors", Json::array({app.errors.begin(), app.errors.end()})},
+              {"errors", app.errors},
               {"refined", report != nullptr ? report->refined : 0},
               {"rel_mse", app.error ? Json(app.error->rel_mse) : Json()},
               {"controls", std::move(controls)}};

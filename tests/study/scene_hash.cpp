@@ -23,7 +23,7 @@ std::uint64_t hash_contents(const std::filesystem::path& scene) {
     for (const gltf::Buffer& buffer : document.buffers) {
         state = add(state, buffer.bytes);
     }
-    for (const candela::Json& image : document.all("images").items()) {
+    for (const gltf::Json& image : document.all("images")) {
         if (const std::string uri = gltf::text_in(image, "uri"); !uri.empty()) {
             state = add(state, *files.read(uri));
         }
@@ -43,7 +43,7 @@ std::uint64_t fnv1a(std::string_view bytes, std::uint64_t state) {
 std::string scene_hash(const std::filesystem::path& scene) {
     try {
         return fmt::format("{:016x}", hash_contents(scene));
-    } catch (const SceneError& error) {
+    } catch (const std::runtime_error& error) {
         throw SceneError(fmt::format("{}: {}", scene.string(), error.what()));
     }
 }
