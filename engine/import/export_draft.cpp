@@ -7,6 +7,7 @@
 #include <utility>
 
 #include <fmt/format.h>
+#include <glm/common.hpp>
 
 #include <candela/scene/scene_error.hpp>
 #include "engine/import/file_names.hpp"
@@ -103,6 +104,16 @@ Json to_json(const glm::quat& rotation) {
     return to_json(glm::vec4(rotation.x, rotation.y, rotation.z, rotation.w));
 }
 
+Json bounds_of(std::span<const glm::vec3> positions) {
+    glm::vec3 lower(std::numeric_limits<float>::infinity());
+    glm::vec3 upper = -lower;
+    for (const glm::vec3& position : positions) {
+        lower = glm::min(lower, position);
+        upper = glm::max(upper, position);
+    }
+    return {{"min", to_json(lower)}, {"max", to_json(upper)}};
+}
+
 Json to_json(const std::string& text) {
     Json json = text;
     try {
@@ -129,6 +140,13 @@ std::size_t Draft::add_view(std::span<const std::byte> bytes, Json members) {
     members.update({{"buffer", 0}, {"byteOffset", buffer_.size()}, {"byteLength", bytes.size()}});
     buffer_.insert(buffer_.end(), bytes.begin(), bytes.end());
     return add("bufferViews", std::move(members));
+}
+
+std::size_t Draft::add_accessor(std::size_t view, int component_type, const char* type, std::size_t count,
+                                Json members) {
+    members.update(
+        {{"bufferView", view}, {"componentType", component_type}, {"type", type}, {"count", count}});
+    return add("accessors", std::move(members));
 }
 
 fs::path Draft::beside(std::string_view ending) const {

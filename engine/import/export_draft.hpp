@@ -25,6 +25,9 @@ namespace candela::gltf {
 [[nodiscard]] Json to_json(const glm::vec4& vector);
 [[nodiscard]] Json to_json(const glm::quat& rotation);  ///< [x, y, z, w]
 
+/// The members "min" and "max" that glTF requires of accessors of positions, also of offsets of these.
+[[nodiscard]] Json bounds_of(std::span<const glm::vec3> positions);
+
 /// Throws SceneError if it is not UTF-8, which JSON requires.
 [[nodiscard]] Json to_json(const std::string& text);
 
@@ -43,6 +46,10 @@ class Draft {
 
     /// Appends bytes to the buffer, as a view with further members of glTF's bufferView. Returns its index.
     std::size_t add_view(std::span<const std::byte> bytes, Json members = Json::object());
+
+    /// Adds an accessor of so many elements of a view, with further members. Returns its index.
+    std::size_t add_accessor(std::size_t view, int component_type, const char* type, std::size_t count,
+                             Json members = Json::object());
 
     /// The members of an image or an environment that refer to this picture, an encoded file: `uri`, of a
     /// file whose name ends in `ending`, or `bufferView`.

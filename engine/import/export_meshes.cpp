@@ -2,10 +2,8 @@
 
 #include <algorithm>
 #include <cstdint>
-#include <limits>
 
 #include <fmt/format.h>
-#include <glm/common.hpp>
 #include <glm/geometric.hpp>
 
 #include <candela/scene/tangents.hpp>
@@ -39,18 +37,6 @@ constexpr Attribute uv{"TEXCOORD_0", offsetof(Vertex, uv), floating_point, "VEC2
 constexpr Attribute colour{"COLOR_0", offsetof(Vertex, colour), unsigned_short, "VEC4"};
 constexpr Attribute tangent{"TANGENT", before_tangent, floating_point, "VEC4"};
 
-/// glTF requires the bounds of positions.
-void add_bounds(Json& accessor, const std::vector<Vertex>& vertices) {
-    glm::vec3 lower(std::numeric_limits<float>::infinity());
-    glm::vec3 upper = -lower;
-    for (const Vertex& vertex : vertices) {
-        lower = glm::min(lower, vertex.position);
-        upper = glm::max(upper, vertex.position);
-    }
-    accessor["min"] = to_json(lower);
-    accessor["max"] = to_json(upper);
-}
-
 bool has_colours(const std::vector<Vertex>& vertices) {
     return std::ranges::any_of(vertices,
                                [](const Vertex& vertex) { return vertex.colour != glm::u16vec4(65535); });
@@ -82,37 +68,29 @@ Json add_vertices(const std::vector<Vertex>& vertices, Draft& draft) {
     const std::size_t view = draft.add_view(interleaved(vertices, with_tangents),
                                             {{"byteStride", stride}, {"target", vertices_target}});
     Json attributes;
-    const auto add = [&](const Attribute& attribute, Json accessor) {
-        accessor.update({{"bufferView", view},
-                         {"byteOffset", attribute.offset},
-                         {"componentType", attribute.component_type},
-                         {"type", attribute.type},
-                         {"count", vertices.size()}});
-        attributes[attribute.name] = draft.add("accessors", std::move(accessor));
+    const auto add = [&](const Attribute& attribute, Json members = Json::object()) {
+        members["byteOffset"] = attribute.offset;
+        attributes[attribute.name] = draft.add_accessor(view, attribute.component_type, attribute.type,
+                                                        vertices.size(), std::move(members));
     };
-    Json bounds;
-    add_bounds(bounds, vertices);
-    add(position, std::move(bounds));
-    add(normal, Json::object());
-    add(uv, Json::object());
+    std::vector<glm::vec3> positions;
+    for (const Vertex& vertex : vertices) positions.push_back(vertex.position);
+    add(position, bounds_of(positions));
+    add(normal);
+    add(uv);
     if (has_colours(vertices)) add(colour, {{"normalized", true}});
-    if (with_tangents) add(tangent, Json::object());
+    if (with_tangents) add(tangent);
     return attributes;
 }
 
 std::size_t add_second_uvs(const std::vector<glm::vec2>& uvs, Draft& draft) {
     const std::size_t view = draft.add_view(std::as_bytes(std::span(uvs)), {{"target", vertices_target}});
-    return draft.add(
-        "accessors",
-        {{"bufferView", view}, {"componentType", floating_point}, {"type", "VEC2"}, {"count", uvs.size()}});
+    return draft.add_accessor(view, floating_point, "VEC2", uvs.size());
 }
 
 std::size_t add_indices(const std::vector<std::uint32_t>& indices, Draft& draft) {
     const std::size_t view = draft.add_view(std::as_bytes(std::span(indices)), {{"target", indices_target}});
-    return draft.add("accessors", {{"bufferView", view},
-                                   {"componentType", unsigned_int},
-                                   {"type", "SCALAR"},
-                                   {"count", indices.size()}});
+    return draft.add_accessor(view, unsigned_int, "SCALAR", indices.size());
 }
 
 bool has_unit_normals(const Mesh& mesh) {

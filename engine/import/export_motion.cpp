@@ -2,10 +2,8 @@
 
 #include <algorithm>
 #include <cmath>
-#include <limits>
 
 #include <fmt/format.h>
-#include <glm/common.hpp>
 
 #include <candela/scene/scene_error.hpp>
 #include "engine/animation/sample.hpp"
@@ -22,37 +20,24 @@ void check_finite(std::span<const float> numbers) {
     if (!std::ranges::all_of(numbers, is_finite)) throw SceneError("a number is not finite");
 }
 
-const char* accessor_type(std::size_t components) {
+const char* type_of(std::size_t components) {
     if (components == 1) return "SCALAR";
+    if (components == 16) return "MAT4";
     return components == 3 ? "VEC3" : "VEC4";
 }
 
 /// An accessor of all numbers.
 std::size_t add_numbers(std::span<const float> numbers, std::size_t components, Draft& draft,
-                        Json accessor = Json::object()) {
+                        Json members = Json::object()) {
     check_finite(numbers);
-    accessor.update({{"bufferView", draft.add_view(std::as_bytes(numbers))},
-                     {"componentType", floating_point},
-                     {"count", numbers.size() / components},
-                     {"type", accessor_type(components)}});
-    return draft.add("accessors", std::move(accessor));
+    return draft.add_accessor(draft.add_view(std::as_bytes(numbers)), floating_point, type_of(components),
+                              numbers.size() / components, std::move(members));
 }
 
 void check_count(std::size_t items, const Primitive& primitive, const char* plural) {
     if (items != primitive.vertices.size()) {
         throw SceneError(fmt::format("{} {} for {} vertices", items, plural, primitive.vertices.size()));
     }
-}
-
-/// glTF requires the bounds of positions, also of offsets.
-Json bounds_of(const std::vector<glm::vec3>& offsets) {
-    glm::vec3 lower(std::numeric_limits<float>::infinity());
-    glm::vec3 upper = -lower;
-    for (const glm::vec3& offset : offsets) {
-        lower = glm::min(lower, offset);
-        upper = glm::max(upper, offset);
-    }
-    return {{"min", to_json(lower)}, {"max", to_json(upper)}};
 }
 
 void add_offsets(const std::vector<glm::vec3>& offsets, const char* name, const Primitive& primitive,
@@ -95,11 +80,7 @@ void add_influences(const Primitive& primitive, Draft& draft, Json& attributes) 
             std::as_bytes(std::span(set)), {{"byteStride", sizeof(Influences)}, {"target", vertices_target}});
         const auto add = [&](const char* kind, std::size_t offset, int component_type) {
             attributes[fmt::format("{}_{}", kind, i)] =
-                draft.add("accessors", {{"bufferView", view},
-                                        {"byteOffset", offset},
-                                        {"componentType", component_type},
-                                        {"count", set.size()},
-                                        {"type", "VEC4"}});
+                draft.add_accessor(view, component_type, "VEC4", set.size(), {{"byteOffset", offset}});
         };
         add("JOINTS", offsetof(Influences, joints), unsigned_short);
         add("WEIGHTS", offsetof(Influences, weights), floating_point);
@@ -182,13 +163,8 @@ std::optional<std::size_t> MotionWriter::index_of(const Skin& skin) {
             throw SceneError(fmt::format("its skin has {} joints, but {} inverse bind matrices",
                                          skin.joints.size(), matrices->size()));
         }
-        const std::span<const float> numbers(&matrices->front()[0][0], 16 * matrices->size());
-        check_finite(numbers);
         json["inverseBindMatrices"] =
-            draft_.add("accessors", {{"bufferView", draft_.add_view(std::as_bytes(numbers))},
-                                     {"componentType", floating_point},
-                                     {"count", matrices->size()},
-                                     {"type", "MAT4"}});
+            add_numbers({&matrices->front()[0][0], 16 * matrices->size()}, 16, draft_);
     }
     skins_.emplace_back(skin, draft_.add("skins", std::move(json)));
     return skins_.back().second;

@@ -12,7 +12,6 @@
 #include <tuple>
 
 #include <fmt/format.h>
-#include <glm/common.hpp>
 
 #include <candela/scene/scene_error.hpp>
 #include "engine/import/gltf_constants.hpp"
@@ -236,16 +235,6 @@ float real_component(const unsigned char* element, std::size_t i, const Accessor
     }
 }
 
-/// What an accessor is to hold: `plural`, as vectors of this type, of FLOAT or of these integers.
-struct Use {
-    std::string_view plural;
-    std::string_view type;
-    bool unsigned_fractions = false;    ///< normalised UNSIGNED_BYTE and UNSIGNED_SHORT
-    bool signed_fractions = false;      ///< normalised BYTE and SHORT
-    bool quantized_numbers = false;     ///< by KHR_mesh_quantization: of 8 and 16 bits, normalised or not
-    bool quantized_directions = false;  ///< the same: normalised BYTE and SHORT
-};
-
 bool allows(const Use& use, const Document& document, const Accessor& accessor) {
     const int type = accessor.source.component_type;
     if (type == floating_point) return true;
@@ -273,28 +262,6 @@ SceneError misfit(int index, const Use& use, const Document& document) {
         type += ", or of a type of KHR_mesh_quantization";
     }
     return misfit(index, use.plural, type);
-}
-
-/// Elements that consist of floats.
-template <class Element>
-std::vector<Element> read_reals(const Document& document, int index, const Selection& selection,
-                                const Use& use) {
-    using Parts = std::array<float, sizeof(Element) / sizeof(float)>;
-    const Accessor accessor = accessor_at(document, index);
-    if (accessor.components != int{std::tuple_size_v<Parts>} || !allows(use, document, accessor)) {
-        throw misfit(index, use, document);
-    }
-    auto elements = read<Element>(document, index, selection, [&accessor](const unsigned char* element) {
-        Parts parts;
-        for (std::size_t i = 0; i < parts.size(); ++i) parts[i] = real_component(element, i, accessor);
-        return std::bit_cast<Element>(parts);
-    });
-    const auto is_finite = [](float part) { return std::isfinite(part); };
-    for (std::size_t i = 0; i < elements.size(); ++i) {
-        if (std::ranges::all_of(std::bit_cast<Parts>(elements[i]), is_finite)) continue;
-        throw SceneError(fmt::format("accessor {} has a NaN or infinity in element {}", index, selection[i]));
-    }
-    return elements;
 }
 
 /// The components, one after the other.
@@ -363,56 +330,36 @@ void check_count(const Document& document, const Json& primitive, int accessor, 
     }
 }
 
-std::vector<glm::vec3> read_positions(const Document& document, int index, const Selection& selection) {
-    return read_reals<glm::vec3>(document, index, selection,
-                                 {.plural = "positions", .type = "VEC3", .quantized_numbers = true});
-}
-
-std::vector<glm::vec3> read_normals(const Document& document, int index, const Selection& selection) {
-    return read_reals<glm::vec3>(document, index, selection,
-                                 {.plural = "normals", .type = "VEC3", .quantized_directions = true});
-}
-
-std::vector<glm::vec4> read_tangents(const Document& document, int index, const Selection& selection) {
-    return read_reals<glm::vec4>(document, index, selection,
-                                 {.plural = "tangents", .type = "VEC4", .quantized_directions = true});
-}
-
-std::vector<glm::vec3> read_vectors(const Document& document, int index, const Selection& selection) {
-    return read_reals<glm::vec3>(document, index, selection,
-                                 {.plural = "translations or scales", .type = "VEC3"});
-}
-
-std::vector<glm::vec4> read_rotations(const Document& document, int index, const Selection& selection) {
-    return read_reals<glm::vec4>(document, index, selection,
-                                 {.plural = "rotations", .type = "VEC4", .signed_fractions = true});
-}
-
-std::vector<glm::vec2> read_texture_coordinates(const Document& document, int index,
-                                                const Selection& selection) {
-    return read_reals<glm::vec2>(document, index, selection,
-                                 {.plural = "texture coordinates",
-                                  .type = "VEC2",
-                                  .unsigned_fractions = true,
-                                  .quantized_numbers = true});
-}
-
-std::vector<glm::u16vec4> read_colours(const Document& document, int index, const Selection& selection) {
-    const Use use{.plural = "colours", .type = "VEC3 or VEC4", .unsigned_fractions = true};
-    std::vector<glm::u16vec4> rounded;
-    rounded.reserve(selection.count());
-    const auto add = [&](const glm::vec4& colour) {
-        rounded.emplace_back(glm::clamp(colour, 0.0F, 1.0F) * 65535.0F + 0.5F);
-    };
-    if (accessor_at(document, index).components == 3) {
-        for (const glm::vec3& colour : read_reals<glm::vec3>(document, index, selection, use)) {
-            add(glm::vec4(colour, 1.0F));
+template <class Element>
+std::vector<Element> read_reals(const Document& document, int index, const Selection& selection,
+                                const Use& use) {
+    using Parts = std::array<float, sizeof(Element) / sizeof(float)>;
+    constexpr int most = std::tuple_size_v<Parts>;
+    const Accessor accessor = accessor_at(document, index);
+    const bool fits = accessor.components == most || (use.has_optional_alpha && accessor.components == 3);
+    if (!fits || !allows(use, document, accessor)) throw misfit(index, use, document);
+    auto elements = read<Element>(document, index, selection, [&accessor](const unsigned char* element) {
+        Parts parts;
+        parts.fill(1.0F);
+        for (int i = 0; i < accessor.components; ++i) {
+            const auto part = static_cast<std::size_t>(i);
+            parts[part] = real_component(element, part, accessor);
         }
-    } else {
-        std::ranges::for_each(read_reals<glm::vec4>(document, index, selection, use), add);
+        return std::bit_cast<Element>(parts);
+    });
+    const auto is_finite = [](float part) { return std::isfinite(part); };
+    for (std::size_t i = 0; i < elements.size(); ++i) {
+        if (std::ranges::all_of(std::bit_cast<Parts>(elements[i]), is_finite)) continue;
+        throw SceneError(fmt::format("accessor {} has a NaN or infinity in element {}", index, selection[i]));
     }
-    return rounded;
+    return elements;
 }
+
+template std::vector<float> read_reals(const Document&, int, const Selection&, const Use&);
+template std::vector<glm::vec2> read_reals(const Document&, int, const Selection&, const Use&);
+template std::vector<glm::vec3> read_reals(const Document&, int, const Selection&, const Use&);
+template std::vector<glm::vec4> read_reals(const Document&, int, const Selection&, const Use&);
+template std::vector<glm::mat4> read_reals(const Document&, int, const Selection&, const Use&);
 
 std::vector<glm::u16vec4> read_joints(const Document& document, int index, const Selection& selection) {
     const Accessor accessor = accessor_at(document, index);
@@ -427,20 +374,6 @@ std::vector<glm::u16vec4> read_joints(const Document& document, int index, const
         };
         return glm::u16vec4(joint(0), joint(1), joint(2), joint(3));
     });
-}
-
-std::vector<glm::vec4> read_weights(const Document& document, int index, const Selection& selection) {
-    return read_reals<glm::vec4>(document, index, selection,
-                                 {.plural = "weights", .type = "VEC4", .unsigned_fractions = true});
-}
-
-std::vector<glm::mat4> read_matrices(const Document& document, int index, const Selection& selection) {
-    return read_reals<glm::mat4>(document, index, selection, {.plural = "matrices", .type = "MAT4"});
-}
-
-std::vector<float> read_key_times(const Document& document, int index) {
-    return read_reals<float>(document, index, Selection(element_count(document, index)),
-                             {.plural = "times", .type = "SCALAR"});
 }
 
 std::vector<float> read_key_values(const Document& document, int index, std::size_t components,

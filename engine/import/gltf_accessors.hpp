@@ -65,53 +65,40 @@ void check_count(const Document& document, const Json& primitive, int accessor, 
 /// that is not supported holds them.
 [[nodiscard]] bool has_data(const Document& document, int accessor);
 
-// Floats are finite. The types that are named "quantized" are read only if the document declares
-// KHR_mesh_quantization. Normalised integers are fractions of the largest; others are numbers as they are.
+/// What an accessor is to hold: `plural`, as vectors of this type, of FLOAT or of the integers named here.
+struct Use {
+    std::string_view plural;
+    std::string_view type;
+    bool has_optional_alpha = false;    ///< VEC3, too: the fourth component is then 1
+    bool unsigned_fractions = false;    ///< normalised UNSIGNED_BYTE and UNSIGNED_SHORT
+    bool signed_fractions = false;      ///< normalised BYTE and SHORT
+    bool quantized_numbers = false;     ///< by KHR_mesh_quantization: of 8 and 16 bits, normalised or not
+    bool quantized_directions = false;  ///< the same: normalised BYTE and SHORT
+};
+namespace uses {
+inline constexpr Use positions{.plural = "positions", .type = "VEC3", .quantized_numbers = true};
+inline constexpr Use normals{.plural = "normals", .type = "VEC3", .quantized_directions = true};
+inline constexpr Use tangents{.plural = "tangents", .type = "VEC4", .quantized_directions = true};
+inline constexpr Use texture_coordinates{
+    .plural = "texture coordinates", .type = "VEC2", .unsigned_fractions = true, .quantized_numbers = true};
+inline constexpr Use colours{
+    .plural = "colours", .type = "VEC3 or VEC4", .has_optional_alpha = true, .unsigned_fractions = true};
+inline constexpr Use weights{.plural = "weights", .type = "VEC4", .unsigned_fractions = true};
+inline constexpr Use matrices{.plural = "matrices", .type = "MAT4"};
+inline constexpr Use times{.plural = "times", .type = "SCALAR"};
+inline constexpr Use vectors_of_instances{.plural = "translations or scales", .type = "VEC3"};
+inline constexpr Use rotations_of_instances{.plural = "rotations", .type = "VEC4", .signed_fractions = true};
+}  // namespace uses
 
-/// Positions: VEC3 of FLOAT; quantized: of integers of 8 or 16 bits, normalised or not.
-[[nodiscard]] std::vector<glm::vec3> read_positions(const Document& document, int accessor,
-                                                    const Selection& selection);
-
-/// Normals: VEC3 of FLOAT; quantized: of normalised BYTE or SHORT.
-[[nodiscard]] std::vector<glm::vec3> read_normals(const Document& document, int accessor,
-                                                  const Selection& selection);
-
-/// Tangents: VEC4 of the same.
-[[nodiscard]] std::vector<glm::vec4> read_tangents(const Document& document, int accessor,
-                                                   const Selection& selection);
-
-/// Translations or scales of instances: VEC3 of FLOAT.
-[[nodiscard]] std::vector<glm::vec3> read_vectors(const Document& document, int accessor,
-                                                  const Selection& selection);
-
-/// Rotations of instances, (x, y, z, w): VEC4 of FLOAT or of normalised BYTE or SHORT.
-[[nodiscard]] std::vector<glm::vec4> read_rotations(const Document& document, int accessor,
-                                                    const Selection& selection);
-
-/// Texture coordinates: VEC2 of FLOAT, or of normalised UNSIGNED_BYTE or UNSIGNED_SHORT; quantized: of
-/// integers of 8 or 16 bits, normalised or not.
-[[nodiscard]] std::vector<glm::vec2> read_texture_coordinates(const Document& document, int accessor,
-                                                              const Selection& selection);
-
-/// Vertex colours: VEC3, whose alpha is 1, or VEC4, with channels in [0, 1], as FLOAT or as normalised
-/// UNSIGNED_BYTE or UNSIGNED_SHORT. Floats outside [0, 1] are clamped. 65535 is 1.
-[[nodiscard]] std::vector<glm::u16vec4> read_colours(const Document& document, int accessor,
-                                                     const Selection& selection);
+/// Elements that consist of finite floats: float or a vector or matrix of GLM. Normalised integers become
+/// fractions of the largest, others the same number.
+template <class Element>
+[[nodiscard]] std::vector<Element> read_reals(const Document& document, int accessor,
+                                              const Selection& selection, const Use& use);
 
 /// Indices of joints: VEC4 of UNSIGNED_BYTE or UNSIGNED_SHORT, not normalised.
 [[nodiscard]] std::vector<glm::u16vec4> read_joints(const Document& document, int accessor,
                                                     const Selection& selection);
-
-/// Weights of joints: VEC4 of FLOAT, or of normalised UNSIGNED_BYTE or UNSIGNED_SHORT.
-[[nodiscard]] std::vector<glm::vec4> read_weights(const Document& document, int accessor,
-                                                  const Selection& selection);
-
-/// Matrices: MAT4 of FLOAT.
-[[nodiscard]] std::vector<glm::mat4> read_matrices(const Document& document, int accessor,
-                                                   const Selection& selection);
-
-/// Times of an animation's keys: SCALAR of FLOAT.
-[[nodiscard]] std::vector<float> read_key_times(const Document& document, int accessor);
 
 /// Values of an animation's keys, their components one after the other: SCALAR, VEC3 or VEC4, as `components`
 /// says, of FLOAT, or, if they `may_be_integers`, of normalised integers of 8 or 16 bits.

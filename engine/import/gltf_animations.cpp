@@ -166,8 +166,10 @@ class AnimationReader {
     Floats times_of(int accessor) {
         Floats& times = times_[accessor];
         if (!times) {
-            budget_.add_memory(element_count(document_, accessor) * sizeof(float));
-            times = std::make_shared<const std::vector<float>>(read_key_times(document_, accessor));
+            const std::size_t count = element_count(document_, accessor);
+            budget_.add_memory(count * sizeof(float));
+            times = std::make_shared<const std::vector<float>>(
+                read_reals<float>(document_, accessor, Selection(count), uses::times));
             check_times(*times);
         }
         return times;

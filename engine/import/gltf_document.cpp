@@ -81,30 +81,24 @@ Container split(Bytes bytes) {
 
 /// The names of extensions in one of the document's lists.
 std::set<std::string> extensions_in(const Json& document, const char* member) {
-    std::set<std::string> listed;
-    for (const Json& name : list_in(document, member)) {
-        listed.insert(name.get<std::string>());
-    }
-    return listed;
+    return list_in(document, member).get<std::set<std::string>>();
 }
 
 /// A warning for each extension that the file requires or uses and that is not supported.
 std::vector<std::string> check_extensions(const Json& document) {
     const std::set<std::string> required = extensions_in(document, "extensionsRequired");
+    std::set<std::string> used = extensions_in(document, "extensionsUsed");
+    used.insert(required.begin(), required.end());
     std::vector<std::string> warnings;
-    for (const std::string& name : required) {
-        if (!is_supported(name) && !is_approximated(name)) {
+    for (const std::string& name : used) {
+        if (is_supported(name)) continue;
+        if (is_approximated(name)) {
+            warnings.push_back(fmt::format("{} is approximated by the base layer", name));
+        } else if (required.contains(name)) {
             warnings.push_back(fmt::format(
                 "it requires the extension {}, which is not supported: what is shown may be wrong",
                 readable(name)));
-        }
-    }
-    std::set<std::string> used = extensions_in(document, "extensionsUsed");
-    used.insert(required.begin(), required.end());
-    for (const std::string& name : used) {
-        if (is_approximated(name)) {
-            warnings.push_back(fmt::format("{} is approximated by the base layer", name));
-        } else if (!is_supported(name) && !required.contains(name)) {
+        } else {
             warnings.push_back(
                 fmt::format("the extension {} is not supported and is ignored", readable(name)));
         }

@@ -38,18 +38,18 @@ std::vector<Transform> read_instances(const Document& document, const Json& node
     const Selection all(count);
     std::vector<Transform> transforms(count);
     if (const int translations = index_in(attributes, "TRANSLATION"); translations >= 0) {
-        const std::vector<glm::vec3> vectors = read_vectors(document, translations, all);
+        const auto vectors = read_reals<glm::vec3>(document, translations, all, uses::vectors_of_instances);
         for (std::size_t i = 0; i < count; ++i) transforms[i].translation = vectors[i];
     }
     if (const int rotations = index_in(attributes, "ROTATION"); rotations >= 0) {
-        const std::vector<glm::vec4> parts = read_rotations(document, rotations, all);
+        const auto parts = read_reals<glm::vec4>(document, rotations, all, uses::rotations_of_instances);
         for (std::size_t i = 0; i < count; ++i) {
             transforms[i].rotation =
                 naming(fmt::format("instance {}", i), [&] { return unit_rotation(glm::dvec4(parts[i])); });
         }
     }
     if (const int scales = index_in(attributes, "SCALE"); scales >= 0) {
-        const std::vector<glm::vec3> vectors = read_vectors(document, scales, all);
+        const auto vectors = read_reals<glm::vec3>(document, scales, all, uses::vectors_of_instances);
         for (std::size_t i = 0; i < count; ++i) transforms[i].scale = vectors[i];
     }
     return transforms;

@@ -11,6 +11,7 @@
 #include <string_view>
 
 #include <fmt/format.h>
+#include <glm/common.hpp>
 #include <glm/geometric.hpp>
 
 #include <candela/scene/scene_error.hpp>
@@ -49,17 +50,20 @@ int indices_of(const Json& source) {
 
 /// Sets an attribute, if the primitive has it, of the selected vertices. It must have one element for each
 /// position.
-template <class Element, class Read, class Set>
-void read_attribute(const Document& document, const Json& source, std::string_view name,
-                    std::string_view plural, const Selection& selection, std::vector<Element>& vertices,
-                    Read read, Set set) {
+template <class Element, class Vertices, class Set>
+void read_attribute(const Document& document, const Json& source, std::string_view name, const Use& use,
+                    const Selection& selection, Vertices& vertices, Set set) {
     const int accessor = attribute_of(source, name);
     if (accessor < 0) return;
-    check_count(document, source, accessor, plural);
-    const auto elements = read(document, accessor, selection);
+    check_count(document, source, accessor, use.plural);
+    const auto elements = read_reals<Element>(document, accessor, selection, use);
     for (std::size_t i = 0; i < elements.size(); ++i) {
         set(vertices[i], elements[i]);
     }
+}
+
+void set_colour(Vertex& vertex, const glm::vec4& colour) {
+    vertex.colour = glm::u16vec4(glm::clamp(colour, 0.0F, 1.0F) * 65535.0F + 0.5F);
 }
 
 void set_normal(Vertex& vertex, const glm::vec3& normal) {
@@ -85,8 +89,8 @@ void set_tangent(Vertex& vertex, const glm::vec4& tangent) {
 template <class Element, class Set>
 void read_uvs(const Document& document, const Json& source, const Coordinates& coordinates,
               const Selection& selection, std::vector<Element>& into, Set set) {
-    read_attribute(document, source, fmt::format("TEXCOORD_{}", coordinates.set), "texture coordinates",
-                   selection, into, read_texture_coordinates, set);
+    read_attribute<glm::vec2>(document, source, fmt::format("TEXCOORD_{}", coordinates.set),
+                              uses::texture_coordinates, selection, into, set);
 }
 
 glm::vec2 transformed(const Coordinates& coordinates, glm::vec2 uv) {
@@ -109,14 +113,14 @@ std::vector<Vertex> read_vertices(const Document& document, const Json& source,
                                   const Coordinates& coordinates, const Selection& selection) {
     std::vector<Vertex> vertices;
     vertices.reserve(selection.count());
-    for (const glm::vec3& position : read_positions(document, attribute_of(source, "POSITION"), selection)) {
+    for (const glm::vec3& position :
+         read_reals<glm::vec3>(document, attribute_of(source, "POSITION"), selection, uses::positions)) {
         vertices.push_back({position, glm::vec3(0.0F), glm::vec2(0.0F)});
     }
-    read_attribute(document, source, "NORMAL", "normals", selection, vertices, read_normals, set_normal);
+    read_attribute<glm::vec3>(document, source, "NORMAL", uses::normals, selection, vertices, set_normal);
     read_uvs(document, source, coordinates, selection, vertices,
              [](Vertex& vertex, glm::vec2 uv) { vertex.uv = uv; });
-    read_attribute(document, source, "COLOR_0", "colours", selection, vertices, read_colours,
-                   [](Vertex& vertex, glm::u16vec4 colour) { vertex.colour = colour; });
+    read_attribute<glm::vec4>(document, source, "COLOR_0", uses::colours, selection, vertices, set_colour);
     return vertices;
 }
 
@@ -311,8 +315,8 @@ Primitive read_primitive(const Document& document, const Json& source, const Rea
     const bool needs_tangents = material.material->normal_texture != nullptr;
     const bool uses_tangents = needs_tangents && has_tangents(source, material);
     if (uses_tangents) {
-        read_attribute(document, source, "TANGENT", "tangents", selection, primitive.vertices, read_tangents,
-                       set_tangent);
+        read_attribute<glm::vec4>(document, source, "TANGENT", uses::tangents, selection, primitive.vertices,
+                                  set_tangent);
     }
     if (is_skinned) primitive.influences = read_influences(document, source, selection, budget);
     primitive.targets = read_targets(document, source, uses_tangents, selection, budget);

@@ -12,15 +12,14 @@ namespace candela::gltf {
 namespace {
 
 /// An attribute of a morph target; empty if it does not have it.
-template <class Read>
 std::vector<glm::vec3> read_offsets(const Document& document, const Json& primitive, const Json& target,
                                     const char* name, const Selection& selection, ImportBudget& budget,
-                                    Read read) {
+                                    const Use& use) {
     const int accessor = index_in(target, name);
     if (accessor < 0) return {};
     check_count(document, primitive, accessor, "offsets in a morph target");
     budget.add_memory(selection.count() * sizeof(glm::vec3));
-    return read(document, accessor, selection);
+    return read_reals<glm::vec3>(document, accessor, selection, use);
 }
 
 }  // namespace
@@ -44,10 +43,7 @@ std::vector<float> read_morph_weights(const Json& object, std::size_t targets,
     if (source.size() != targets) {
         throw SceneError(fmt::format("it has {} weights for {} morph targets", source.size(), targets));
     }
-    std::vector<float> weights;
-    weights.reserve(targets);
-    for (const Json& weight : source) weights.push_back(weight.get<float>());
-    return weights;
+    return source.get<std::vector<float>>();
 }
 
 std::vector<MorphTarget> read_targets(const Document& document, const Json& primitive, bool with_tangents,
@@ -58,13 +54,13 @@ std::vector<MorphTarget> read_targets(const Document& document, const Json& prim
     targets.reserve(sources.size());
     const bool with_normals = index_in(primitive, "attributes.NORMAL") >= 0;
     for (const Json& source : sources) {
-        const auto read = [&](const char* name, auto from) {
-            return read_offsets(document, primitive, source, name, selection, budget, from);
+        const auto read = [&](const char* name, const Use& use) {
+            return read_offsets(document, primitive, source, name, selection, budget, use);
         };
         MorphTarget& target = targets.emplace_back();
-        target.positions = read("POSITION", read_positions);
-        if (with_normals) target.normals = read("NORMAL", read_normals);
-        if (with_tangents) target.tangents = read("TANGENT", read_normals);
+        target.positions = read("POSITION", uses::positions);
+        if (with_normals) target.normals = read("NORMAL", uses::normals);
+        if (with_tangents) target.tangents = read("TANGENT", uses::normals);
     }
     return targets;
 }

@@ -14,7 +14,7 @@ namespace {
 
 ReadSkin read_skin(const Document& document, const Json& source, ImportBudget& budget) {
     ReadSkin skin;
-    for (const Json& joint : source.at("joints")) skin.joints.push_back(joint.get<int>());
+    source.at("joints").get_to(skin.joints);
     const int matrices = index_in(source, "inverseBindMatrices");
     if (matrices < 0) return skin;
     const std::size_t count = element_count(document, matrices);
@@ -24,7 +24,7 @@ ReadSkin read_skin(const Document& document, const Json& source, ImportBudget& b
     }
     budget.add_memory(skin.joints.size() * sizeof(glm::mat4));
     skin.inverse_bind_matrices = std::make_shared<const std::vector<glm::mat4>>(
-        read_matrices(document, matrices, Selection(skin.joints.size())));
+        read_reals<glm::mat4>(document, matrices, Selection(skin.joints.size()), uses::matrices));
     return skin;
 }
 
@@ -61,7 +61,7 @@ std::vector<std::vector<Influences>> read_influences(const Document& document, c
         budget.add_memory(selection.count() *
                           (sizeof(Influences) + sizeof(glm::u16vec4) + sizeof(glm::vec4)));
         const std::vector<glm::u16vec4> read_of_joints = read_joints(document, joints, selection);
-        const std::vector<glm::vec4> read_of_weights = read_weights(document, weights, selection);
+        const auto read_of_weights = read_reals<glm::vec4>(document, weights, selection, uses::weights);
         std::vector<Influences>& set = sets.emplace_back();
         set.reserve(selection.count());
         for (std::size_t i = 0; i < selection.count(); ++i) {

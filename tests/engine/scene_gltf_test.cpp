@@ -498,17 +498,4 @@ TEST_CASE("what a required extension that is not supported does not hold is read
         std::vector<std::string>{warning, "primitives whose positions or indices have no data are skipped"});
 }
 
-TEST_CASE("a chain of 100,000 nodes") {
-    GltfBuilder file = right_triangle();
-    Json nodes = Json::array();
-    for (int i = 0; i < 99'999; ++i) {
-        nodes.push_back({{"children", Json::array({i + 1})}});
-    }
-    nodes.push_back({{"mesh", 0}});
-    file.document["nodes"] = std::move(nodes);
-    const Imported imported(file);
-    CHECK(imported.report.entities.size() == 100'000);
-    CHECK(world_matrix(imported.world, imported.report.entities.back()) == glm::mat4(1.0F));
-}
-
 }  // TEST_SUITE("glTF scenes")
