@@ -29,30 +29,6 @@ std::vector<std::byte> encode_png(const Image& image) {
     return png;
 }
 
-int to_wrap_mode(Wrap wrap) {
-    switch (wrap) {
-        case Wrap::mirrored_repeat:
-            return wrap_mirrored_repeat;
-        case Wrap::clamp_to_edge:
-            return wrap_clamp_to_edge;
-        case Wrap::repeat:
-            break;
-    }
-    return wrap_repeat;
-}
-
-const char* name_of(AlphaMode mode) {
-    switch (mode) {
-        case AlphaMode::mask:
-            return "MASK";
-        case AlphaMode::blend:
-            return "BLEND";
-        case AlphaMode::opaque:
-            break;
-    }
-    return "OPAQUE";
-}
-
 void check_base_colour(const glm::vec4& colour) {
     if (std::max({colour.r, colour.g, colour.b, colour.a}) > 1.0F) {
         throw SceneError("a channel of its base colour is above 1, which glTF does not allow");
@@ -137,7 +113,7 @@ Json MaterialWriter::describe(const Material& material) {
                                                "strength", material.occlusion_strength);
     }
     if (material.double_sided) json["doubleSided"] = true;
-    if (material.alpha_mode != AlphaMode::opaque) json["alphaMode"] = name_of(material.alpha_mode);
+    if (material.alpha_mode != AlphaMode::opaque) json["alphaMode"] = material.alpha_mode;
     if (material.alpha_cutoff != Material{}.alpha_cutoff) {
         json["alphaCutoff"] = to_json(material.alpha_cutoff);
     }
@@ -162,8 +138,7 @@ std::size_t MaterialWriter::add_texture(const Image& image) {
 std::size_t MaterialWriter::sampler_of(Wrap u, Wrap v) {
     const auto found = samplers_.find({u, v});
     if (found != samplers_.end()) return found->second;
-    const std::size_t index =
-        draft_.add("samplers", {{"wrapS", to_wrap_mode(u)}, {"wrapT", to_wrap_mode(v)}});
+    const std::size_t index = draft_.add("samplers", {{"wrapS", u}, {"wrapT", v}});
     samplers_.emplace(std::pair(u, v), index);
     return index;
 }

@@ -49,24 +49,6 @@ void add_offsets(const std::vector<glm::vec3>& offsets, const char* name, const 
                                are_positions ? bounds_of(offsets) : Json::object());
 }
 
-const char* path_of(AnimatedProperty property) {
-    switch (property) {
-        case AnimatedProperty::translation:
-            return "translation";
-        case AnimatedProperty::rotation:
-            return "rotation";
-        case AnimatedProperty::scale:
-            return "scale";
-        default:
-            return "weights";
-    }
-}
-
-const char* name_of(Interpolation interpolation) {
-    if (interpolation == Interpolation::step) return "STEP";
-    return interpolation == Interpolation::linear ? "LINEAR" : "CUBICSPLINE";
-}
-
 }  // namespace
 
 void add_influences(const Primitive& primitive, Draft& draft, Json& attributes) {
@@ -188,9 +170,7 @@ Json MotionWriter::describe_sampler(const AnimationSampler& sampler, std::size_t
     const std::size_t width = is_weights ? 1 : components;
     const auto [value, is_new_value] = values_.emplace(std::pair(sampler.values, width), 0);
     if (is_new_value) value->second = add_numbers(*sampler.values, width, draft_);
-    return {{"input", time->second},
-            {"output", value->second},
-            {"interpolation", name_of(sampler.interpolation)}};
+    return {{"input", time->second}, {"output", value->second}, {"interpolation", sampler.interpolation}};
 }
 
 bool MotionWriter::add_clip(const AnimationClip& clip, std::span<const Entity> targets) {
@@ -212,8 +192,8 @@ bool MotionWriter::add_clip(const AnimationClip& clip, std::span<const Entity> t
             throw SceneError("a sampler does not have the numbers that its keys need");
         }
         const bool is_weights = channel.property == AnimatedProperty::morph_weights;
-        channels.push_back({{"sampler", samplers.size()},
-                            {"target", {{"node", *node}, {"path", path_of(channel.property)}}}});
+        channels.push_back(
+            {{"sampler", samplers.size()}, {"target", {{"node", *node}, {"path", channel.property}}}});
         samplers.push_back(describe_sampler(sampler, components, is_weights));
     }
     if (channels.empty()) return is_complete;

@@ -11,6 +11,7 @@
 
 #include <candela/scene/scene_error.hpp>
 #include "engine/import/gltf_accessors.hpp"
+#include "engine/import/gltf_constants.hpp"
 #include "engine/import/gltf_morphs.hpp"
 #include "engine/import/naming.hpp"
 
@@ -22,18 +23,9 @@ using Floats = std::shared_ptr<const std::vector<float>>;
 
 constexpr std::size_t nowhere = static_cast<std::size_t>(-1);
 
-std::optional<AnimatedProperty> property_of(const std::string& path) {
-    if (path == "translation") return AnimatedProperty::translation;
-    if (path == "rotation") return AnimatedProperty::rotation;
-    if (path == "scale") return AnimatedProperty::scale;
-    if (path == "weights") return AnimatedProperty::morph_weights;
-    return std::nullopt;
-}
-
-Interpolation interpolation_of(const Json& sampler) {
-    const std::string name = text_in(sampler, "interpolation", "LINEAR");
-    if (name == "STEP") return Interpolation::step;
-    return name == "CUBICSPLINE" ? Interpolation::cubic_spline : Interpolation::linear;
+std::optional<AnimatedProperty> property_of(const Json& path) {
+    const auto property = path.get<AnimatedProperty>();  // an unknown one becomes the first
+    return path == property ? std::optional(property) : std::nullopt;
 }
 
 void check_times(const std::vector<float>& times) {
@@ -74,8 +66,7 @@ class AnimationReader {
         for (const Json& channel : source.at("channels")) {
             const std::optional<int> node = node_of(channel);
             if (!node) continue;
-            const AnimatedProperty property =
-                *property_of(channel.at("target").at("path").get<std::string>());
+            const AnimatedProperty property = *property_of(channel.at("target").at("path"));
             const std::size_t components = components_of(*node, property);
             if (components == 0) {
                 omissions_.insert("animations of weights of nodes without morph targets are ignored");
@@ -105,7 +96,7 @@ class AnimationReader {
     std::optional<int> node_of(const Json& channel) {
         const Json& target = channel.at("target");
         const int node = index_in(target, "node");
-        if (!property_of(target.at("path").get<std::string>())) {
+        if (!property_of(target.at("path"))) {
             omissions_.insert(
                 "animations of other values than translation, rotation, scale and weights are ignored");
         } else if (node < 0) {
@@ -139,7 +130,7 @@ class AnimationReader {
 
     AnimationSampler read_sampler(const Json& source, AnimatedProperty property, std::size_t components) {
         AnimationSampler sampler;
-        sampler.interpolation = interpolation_of(source);
+        sampler.interpolation = value_in(source, "interpolation", Interpolation::linear);
         sampler.times = times_of(source.at("input").get<int>());
         const int output = source.at("output").get<int>();
         const bool is_weights = property == AnimatedProperty::morph_weights;

@@ -4,7 +4,29 @@
 #include <array>
 #include <string_view>
 
-namespace candela::gltf {
+#include <nlohmann/json.hpp>
+
+#include <candela/scene/animation.hpp>
+#include <candela/scene/components.hpp>
+
+namespace candela {
+
+// What glTF 2.0 calls the values of enumerations, in files that are read and written.
+NLOHMANN_JSON_SERIALIZE_ENUM(Wrap, {{Wrap::repeat, 10497},
+                                    {Wrap::clamp_to_edge, 33071},
+                                    {Wrap::mirrored_repeat, 33648}})
+NLOHMANN_JSON_SERIALIZE_ENUM(AlphaMode, {{AlphaMode::opaque, "OPAQUE"},
+                                         {AlphaMode::mask, "MASK"},
+                                         {AlphaMode::blend, "BLEND"}})
+NLOHMANN_JSON_SERIALIZE_ENUM(Interpolation, {{Interpolation::linear, "LINEAR"},
+                                             {Interpolation::step, "STEP"},
+                                             {Interpolation::cubic_spline, "CUBICSPLINE"}})
+NLOHMANN_JSON_SERIALIZE_ENUM(AnimatedProperty, {{AnimatedProperty::translation, "translation"},
+                                                {AnimatedProperty::rotation, "rotation"},
+                                                {AnimatedProperty::scale, "scale"},
+                                                {AnimatedProperty::morph_weights, "weights"}})
+
+namespace gltf {
 
 // Numbers that stand for names in glTF 2.0.
 inline constexpr int signed_byte = 5120;
@@ -17,9 +39,6 @@ inline constexpr int mode_triangles = 4;
 inline constexpr int mode_triangle_strip = 5;
 inline constexpr int vertices_target = 34962;
 inline constexpr int indices_target = 34963;
-inline constexpr int wrap_repeat = 10497;
-inline constexpr int wrap_clamp_to_edge = 33071;
-inline constexpr int wrap_mirrored_repeat = 33648;
 
 inline constexpr const char* lights_extension = "KHR_lights_punctual";
 inline constexpr const char* emissive_strength_extension = "KHR_materials_emissive_strength";
@@ -62,4 +81,5 @@ inline constexpr auto approximated_extensions = std::to_array<std::string_view>(
     return std::ranges::find(approximated_extensions, extension) != approximated_extensions.end();
 }
 
-}  // namespace candela::gltf
+}  // namespace gltf
+}  // namespace candela

@@ -26,19 +26,6 @@ namespace {
 
 using ImageKey = std::tuple<const unsigned char*, Wrap, Wrap, Encoding>;  // encoded bytes, wrap_u, wrap_v
 
-Wrap to_wrap(int mode, int sampler) {
-    switch (mode) {
-        case wrap_repeat:
-            return Wrap::repeat;
-        case wrap_mirrored_repeat:
-            return Wrap::mirrored_repeat;
-        case wrap_clamp_to_edge:
-            return Wrap::clamp_to_edge;
-        default:
-            throw SceneError(fmt::format("sampler {} has the unknown wrapping mode {}", sampler, mode));
-    }
-}
-
 /// How a texture repeats along u and v.
 struct Wraps {
     Wrap u = Wrap::repeat;
@@ -49,8 +36,7 @@ Wraps wraps_of(const Document& document, const Json& texture) {
     const int index = index_in(texture, "sampler");
     if (index < 0) return {};
     const Json& sampler = document.at("samplers", index);
-    return {to_wrap(value_in(sampler, "wrapS", wrap_repeat), index),
-            to_wrap(value_in(sampler, "wrapT", wrap_repeat), index)};
+    return {value_in(sampler, "wrapS", Wrap::repeat), value_in(sampler, "wrapT", Wrap::repeat)};
 }
 
 /// The index of a texture's image; -1 for none. Beside an image of a kind that an extension adds, there may
@@ -160,12 +146,6 @@ class ImageReader {
     std::set<std::string> unreadable_;  // images, and textures without one, as warnings call them
     StandIns stand_ins_;
 };
-
-/// check_schema accepts no other names.
-AlphaMode to_alpha_mode(std::string_view name) {
-    if (name == "MASK") return AlphaMode::mask;
-    return name == "BLEND" ? AlphaMode::blend : AlphaMode::opaque;
-}
 
 /// Factors of pbrMetallicRoughness, KHR_materials_specular, KHR_materials_ior and KHR_materials_transmission.
 void read_gloss(const Json& source, Material& material) {
@@ -282,7 +262,7 @@ ReadMaterial read_material(const Json& source, const std::string& label, ImageRe
         read_bumps(source, textures, material);
     }
     material.double_sided = value_in(source, "doubleSided", false);
-    material.alpha_mode = to_alpha_mode(text_in(source, "alphaMode"));
+    material.alpha_mode = value_in(source, "alphaMode", AlphaMode::opaque);
     material.alpha_cutoff = value_in(source, "alphaCutoff", 0.5F);
     return {std::make_shared<const Material>(std::move(material)), textures.first(), textures.second()};
 }

@@ -51,19 +51,13 @@ std::vector<int> find_parents(const Document& document) {
 /// All nodes, parents before their children.
 std::vector<int> from_the_top(const Document& document, const std::vector<int>& parents) {
     std::vector<int> order;
-    std::vector<int> reached;
     for (int node = 0; node < static_cast<int>(parents.size()); ++node) {
-        if (parents[static_cast<std::size_t>(node)] < 0) reached.push_back(node);
+        if (parents[static_cast<std::size_t>(node)] < 0) order.push_back(node);
     }
     std::vector<bool> found(parents.size(), false);
-    while (!reached.empty()) {
-        const int node = reached.back();
-        reached.pop_back();
-        found[static_cast<std::size_t>(node)] = true;
-        order.push_back(node);
-        for (const Json& child : children_of(document, node)) {
-            reached.push_back(child.get<int>());
-        }
+    for (std::size_t i = 0; i < order.size(); ++i) {
+        found[static_cast<std::size_t>(order[i])] = true;
+        for (const Json& child : children_of(document, order[i])) order.push_back(child.get<int>());
     }
     if (const auto lost = std::ranges::find(found, false); lost != found.end()) {
         throw SceneError(fmt::format("node {} is its own ancestor or has one that is", lost - found.begin()));

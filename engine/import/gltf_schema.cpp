@@ -143,13 +143,10 @@ Check version() {
     };
 }
 
-Check one_of(std::vector<std::string_view> names) {
-    return [names = std::move(names)](const Json& value, const Json&) -> Problem {
-        if (!value.is_string()) return "is not a string";
-        const auto name = value.get<std::string>();
-        const bool known = std::ranges::find(names, name) != names.end();
-        return known ? Problem{}
-                     : fmt::format("is \"{}\", not one of {}", readable(name), fmt::join(names, ", "));
+Check one_of(const Json& values) {
+    return [values](const Json& value, const Json&) -> Problem {
+        if (std::ranges::find(values, value) != values.end()) return {};
+        return fmt::format("is {}, not one of {}", readable(value.dump()), values.dump());
     };
 }
 
@@ -218,12 +215,12 @@ std::vector<Rule> rules() {
         {"accessors.[].sparse.indices|values.byteOffset", index},
         {"accessors.[].sparse.indices.componentType", index},
 
-        {"samplers.[].wrapS|wrapT", index},
+        {"samplers.[].wrapS|wrapT", one_of({Wrap::repeat, Wrap::clamp_to_edge, Wrap::mirrored_repeat})},
         {"textures.[].sampler", index_into("samplers")},
         {"textures.[].source", image},
         {"textures.[].extensions.EXT_texture_webp|KHR_texture_basisu.source", image},
         {"materials.[].doubleSided", flag()},
-        {"materials.[].alphaMode", one_of({"OPAQUE", "MASK", "BLEND"})},
+        {"materials.[].alphaMode", one_of({AlphaMode::opaque, AlphaMode::mask, AlphaMode::blend})},
         {"materials.[].alphaCutoff", number(not_negative)},
         {"materials.[].emissiveFactor", numbers(3, not_negative)},
         {"materials.[].normalTexture.scale", number(any)},
@@ -289,7 +286,8 @@ std::vector<Rule> rules() {
         {"animations.[]", has({"channels", "samplers"})},
         {"animations.[].samplers.[]", has({"input", "output"})},
         {"animations.[].samplers.[].input|output", accessor},
-        {"animations.[].samplers.[].interpolation", one_of({"STEP", "LINEAR", "CUBICSPLINE"})},
+        {"animations.[].samplers.[].interpolation",
+         one_of({Interpolation::step, Interpolation::linear, Interpolation::cubic_spline})},
         {"animations.[].channels.[]", has({"sampler", "target"})},
         {"animations.[].channels.[].sampler", index},
         {"animations.[].channels.[].target", has({"path"})},

@@ -6,6 +6,8 @@
 #include <string>
 #include <vector>
 
+#include <fmt/format.h>
+
 #include "tests/engine/gltf_builder.hpp"
 
 namespace candela::test {
@@ -68,6 +70,43 @@ inline GltfBuilder complete_scene() {
                   {"camera": 1}, {"matrix": [1, 0, 0, 0, 0, 1, 0, 0, 0, 0, 1, 0, 0, 0, 0, 1]}]})"));
     file.add("images", {{"uri", sixteen_bit_png}});
     return file;
+}
+
+/// One change to a document, and the error that must be reported.
+struct Defect {
+    std::string where;  ///< JSON pointer
+    std::string value;  ///< JSON text; empty: the member is removed
+    std::string error;  ///< `@` stands for the member as messages call it, `^` for what it is in
+};
+
+/// As messages call it: "nodes[0].mesh".
+inline std::string name_of(const Json::json_pointer& where) {
+    if (where.empty()) return {};
+    const std::string before = name_of(where.parent_pointer());
+    const std::string& last = where.back();
+    if (last.find_first_not_of("0123456789") == std::string::npos) return fmt::format("{}[{}]", before, last);
+    return before.empty() ? last : fmt::format("{}.{}", before, last);
+}
+
+inline std::string expected(std::string error, const Json::json_pointer& where) {
+    if (error.starts_with('@')) return name_of(where) + error.substr(1);
+    return error.starts_with('^') ? name_of(where.parent_pointer()) + error.substr(1) : error;
+}
+
+inline void check_defects(const std::vector<Defect>& defects, const GltfBuilder& whole = complete_scene()) {
+    for (const Defect& defect : defects) {
+        CAPTURE(defect.where);
+        CAPTURE(defect.value);
+        GltfBuilder file = whole;
+        const Json::json_pointer where(defect.where);
+        if (!defect.value.empty()) {
+            file.document[where] = Json::parse(defect.value);
+        } else {
+            REQUIRE(file.document.contains(where));
+            file.document[where.parent_pointer()].erase(where.back());
+        }
+        CHECK(error_of(file) == expected(defect.error, where));
+    }
 }
 
 }  // namespace candela::test

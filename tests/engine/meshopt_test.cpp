@@ -152,8 +152,8 @@ TEST_CASE("damaged data and sizes that do not go together are refused") {
     CHECK(error_with(3, "byteStride", 8) ==
           "buffer view 3: its stride of 8 does not go with TRIANGLES and NONE");
     CHECK(error_with(0, "mode", "POINTS") ==
-          "bufferViews[0].extensions.EXT_meshopt_compression.mode is \"POINTS\", not one of ATTRIBUTES, "
-          "TRIANGLES, INDICES");
+          R"(bufferViews[0].extensions.EXT_meshopt_compression.mode is "POINTS", not one of )"
+          R"(["ATTRIBUTES","TRIANGLES","INDICES"])");
     CHECK(error_with(0, "buffer", 2) ==
           "bufferViews[0].extensions.EXT_meshopt_compression.buffer is 2, but there are 2 buffers");
 }

@@ -14,54 +14,13 @@ TEST_SUITE("malformed glTF") {
 using namespace candela;
 using namespace candela::test;
 
-namespace {
-
-/// One change to the document of the complete scene, and the error that must be reported.
-struct Defect {
-    std::string where;  ///< JSON pointer
-    std::string value;  ///< JSON text; empty: the member is removed
-    std::string error;  ///< `@` stands for the member as messages call it, `^` for what it is in
-};
-
-/// As messages call it: "nodes[0].mesh".
-std::string name_of(const Json::json_pointer& where) {
-    if (where.empty()) return {};
-    const std::string before = name_of(where.parent_pointer());
-    const std::string& last = where.back();
-    if (last.find_first_not_of("0123456789") == std::string::npos) return fmt::format("{}[{}]", before, last);
-    return before.empty() ? last : fmt::format("{}.{}", before, last);
-}
-
-std::string expected(std::string error, const Json::json_pointer& where) {
-    if (error.starts_with('@')) return name_of(where) + error.substr(1);
-    return error.starts_with('^') ? name_of(where.parent_pointer()) + error.substr(1) : error;
-}
-
-void check(const std::vector<Defect>& defects) {
-    for (const Defect& defect : defects) {
-        CAPTURE(defect.where);
-        CAPTURE(defect.value);
-        GltfBuilder file = complete_scene();
-        const Json::json_pointer where(defect.where);
-        if (!defect.value.empty()) {
-            file.document[where] = Json::parse(defect.value);
-        } else {
-            REQUIRE(file.document.contains(where));
-            file.document[where.parent_pointer()].erase(where.back());
-        }
-        CHECK(error_of(file) == expected(defect.error, where));
-    }
-}
-
-}  // namespace
-
 TEST_CASE("the complete scene itself is valid") {
     CHECK(error_of(complete_scene()) == "imported");
     CHECK(error_of(complete_scene().glb()) == "imported");
 }
 
 TEST_CASE("references to missing elements, including negative ones") {
-    check({
+    check_defects({
         {"/nodes/0/mesh", "1", "@ is 1, but there are 1 meshes"},
         {"/nodes/0/mesh", "-1", "@ is -1, but there are 1 meshes"},
         {"/nodes/0/mesh", "\"0\"", "@ is not an index"},
@@ -86,7 +45,7 @@ TEST_CASE("references to missing elements, including negative ones") {
 }
 
 TEST_CASE("accessors and buffer views that do not fit") {
-    check({
+    check_defects({
         {"/accessors/1/byteOffset", "2", "mesh 0: accessor 1 reads past the end of buffer view 1"},
         {"/accessors/1/count", "6", "mesh 0: accessor 1 reads past the end of buffer view 1"},
         {"/accessors/0/count", "4000000000", "mesh 0: accessor 0 reads past the end of buffer view 0"},
@@ -135,7 +94,7 @@ TEST_CASE("a huge accessor of zeros is not allocated") {
 }
 
 TEST_CASE("types that geometry cannot have") {
-    check({
+    check_defects({
         {"/accessors/0/type", "\"VEC2\"", "mesh 0: accessor 0 holds positions, but is not VEC3 of FLOAT"},
         {"/accessors/2/componentType", "5120", "mesh 0: accessor 2 holds normals, but is not VEC3 of FLOAT"},
         {"/accessors/1/componentType", "5126",
@@ -157,7 +116,7 @@ TEST_CASE("types that geometry cannot have") {
         {"/meshes/0/primitives", "{}", "@ is not an array"},
         {"/accessors/0/componentType", "7", "@ is 7, which is out of range"},
         {"/accessors/0/type", "\"VEC5\"",
-         "@ is \"VEC5\", not one of SCALAR, VEC2, VEC3, VEC4, MAT2, MAT3, MAT4"},
+         R"(@ is "VEC5", not one of ["SCALAR","VEC2","VEC3","VEC4","MAT2","MAT3","MAT4"])"},
     });
 }
 
@@ -189,7 +148,7 @@ TEST_CASE("NaN and infinity") {
             coordinates.add_accessor(std::vector<float>{bad, 0, 0, 0, 0, 0}, 5126, "VEC2", 2);
         CHECK(error_of(coordinates) == "mesh 0: accessor 1 has a NaN or infinity in element 0");
     }
-    check({
+    check_defects({
         {"/nodes/0/translation/1", "1e39", "^ holds a member that is 1e+39, which is out of range"},
         {"/nodes/2/matrix/0", "-1e300", "^ holds a member that is -1e+300, which is out of range"},
         {"/nodes/2/matrix", "[3e38,3e38,0,0, -3e38,3e38,0,0, 0,0,1,0, 0,0,0,1]",
@@ -200,7 +159,7 @@ TEST_CASE("NaN and infinity") {
 }
 
 TEST_CASE("transforms") {
-    check({
+    check_defects({
         {"/nodes/0/translation", "[1, 2]", "@ is not 3 numbers"},
         {"/nodes/0/rotation", "[0, 0, 1]", "@ is not 4 numbers"},
         {"/nodes/0/rotation", "[0, 0, 0, 0]", "node 0: its rotation is zero"},
@@ -214,7 +173,7 @@ TEST_CASE("transforms") {
 }
 
 TEST_CASE("hierarchies that are not trees") {
-    check({
+    check_defects({
         {"/nodes/1/children", "[2]", "node 2 has two parents, nodes 0 and 1"},
         {"/nodes/0/children", "[1, 1]", "node 1 has two parents, nodes 0 and 0"},
         {"/nodes/0/children", "[0]", "node 0 is its own ancestor or has one that is"},
@@ -230,7 +189,7 @@ TEST_CASE("hierarchies that are not trees") {
 }
 
 TEST_CASE("lights and cameras with values out of range") {
-    check({
+    check_defects({
         {"/extensions/KHR_lights_punctual/lights/0/intensity", "-1", "@ is -1, which is out of range"},
         {"/extensions/KHR_lights_punctual/lights/0/range", "0", "@ is 0, which is out of range"},
         {"/extensions/KHR_lights_punctual/lights/0/color", "[1, 1]", "@ is not 3 numbers"},
@@ -256,13 +215,13 @@ TEST_CASE("lights and cameras with values out of range") {
 }
 
 TEST_CASE("materials and images") {
-    check({
+    check_defects({
         {"/materials/0/pbrMetallicRoughness/baseColorFactor", "[1, 1, 1]", "@ is not 4 numbers"},
         {"/materials/0/pbrMetallicRoughness/baseColorFactor/2", "1.5",
          "^ holds a member that is 1.5, which is out of range"},
         {"/materials/0/doubleSided", "1", "@ is not true or false"},
-        {"/materials/0/alphaMode", "\"GLASS\"", "@ is \"GLASS\", not one of OPAQUE, MASK, BLEND"},
-        {"/materials/0/alphaMode", "2", "@ is not a string"},
+        {"/materials/0/alphaMode", "\"GLASS\"", R"(@ is "GLASS", not one of ["OPAQUE","MASK","BLEND"])"},
+        {"/materials/0/alphaMode", "2", R"(@ is 2, not one of ["OPAQUE","MASK","BLEND"])"},
         {"/materials/0/alphaCutoff", "-0.1", "@ is -0.1, which is out of range"},
         {"/materials/0/alphaCutoff", "\"half\"", "@ is not a number"},
         {"/materials/0/pbrMetallicRoughness/metallicFactor", "2", "@ is 2, which is out of range"},
@@ -287,7 +246,7 @@ TEST_CASE("materials and images") {
          "@ is 1e+39, which is out of range"},
         {"/materials/0/extensions/KHR_materials_emissive_strength/emissiveStrength", "3e38",
          "material 0: its emission is too large"},
-        {"/samplers/0/wrapS", "1", "sampler 0 has the unknown wrapping mode 1"},
+        {"/samplers/0/wrapS", "1", "@ is 1, not one of [10497,33071,33648]"},
         {"/images/0", "{\"bufferView\": 6}", "images[0].bufferView is 6, but there are 6 buffer views"},
         {"/images/0/uri", "\"../nowhere.png\"",
          "image 0: ../nowhere.png is outside of the folder that files are read from"},
@@ -359,7 +318,7 @@ TEST_CASE("buffers") {
 }
 
 TEST_CASE("versions and extensions") {
-    check({
+    check_defects({
         {"/asset", "", "it has no \"asset\", so it is not glTF 2.0"},
         {"/asset/version", "", "^ has no \"version\""},
         {"/asset/version", "\"1.0\"", "@ is \"1.0\"; only 2.0 is read"},
