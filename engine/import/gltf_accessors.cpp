@@ -6,7 +6,6 @@
 #include <cmath>
 #include <cstring>
 #include <limits>
-#include <optional>
 #include <string>
 #include <string_view>
 #include <tuple>
@@ -20,26 +19,11 @@ namespace candela::gltf {
 
 namespace {
 
-/// A run of elements in a buffer view.
-struct ElementSource {
-    int buffer_view = -1;
-    std::size_t offset = 0;  ///< bytes
-    int component_type = 0;
-};
-
-/// Elements that replace some of an accessor's. Their components have the accessor's type.
-struct SparseElements {
-    std::size_t count = 0;
-    ElementSource indices;
-    ElementSource values;
-};
-
 struct Accessor {
-    ElementSource source;     ///< without a buffer view all elements are zero
+    int component_type = 0;
     int components = 0;       ///< of SCALAR 1, of VEC2 to VEC4 2 to 4, of MAT4 16; 0 for smaller matrices
     std::size_t count = 0;    ///< elements
     bool normalized = false;  ///< integers stand for fractions of the largest
-    std::optional<SparseElements> sparse;
 };
 
 int components_of(std::string_view type) {
@@ -48,24 +32,10 @@ int components_of(std::string_view type) {
     return type.starts_with("VEC") ? type.back() - '0' : 0;
 }
 
-ElementSource source_in(const Json& object, int component_type) {
-    return {index_in(object, "bufferView"), value_in(object, "byteOffset", std::size_t{0}), component_type};
-}
-
 Accessor accessor_at(const Document& document, int index) {
     const Json& json = document.at("accessors", index);
-    Accessor accessor;
-    accessor.source = source_in(json, json.at("componentType").get<int>());
-    accessor.components = components_of(json.at("type").get<std::string>());
-    accessor.count = json.at("count").get<std::size_t>();
-    accessor.normalized = value_in(json, "normalized", false);
-    if (const Json* const sparse = find_member(json, "sparse")) {
-        const Json& indices = sparse->at("indices");
-        accessor.sparse = {sparse->at("count").get<std::size_t>(),
-                           source_in(indices, indices.at("componentType").get<int>()),
-                           source_in(sparse->at("values"), accessor.source.component_type)};
-    }
-    return accessor;
+    return {json.at("componentType").get<int>(), components_of(json.at("type").get<std::string>()),
+            json.at("count").get<std::size_t>(), value_in(json, "normalized", false)};
 }
 
 template <class T>
@@ -83,35 +53,27 @@ struct Elements {
     const unsigned char* operator[](std::size_t i) const { return first + i * stride; }
 };
 
-/// A range of elements as a file describes it; offset and sizes in bytes. `owner` names it in messages.
-struct Run {
-    std::string owner;
-    int buffer_view;
-    std::size_t offset;
-    std::size_t count;
-    std::size_t component_size;
-    std::size_t element_size;
-};
-
-Elements locate(const Document& document, const Run& run) {
-    const Bytes bytes = buffer_view_bytes(document, run.buffer_view);
-    const Json& view = document.at("bufferViews", run.buffer_view);
-    const std::size_t stride = value_in(view, "byteStride", run.element_size);
-    if (stride < run.element_size) {
+/// The `count` elements of an accessor, or of a part of its sparse ones, which has the same members.
+/// `owner` names it in messages; sizes in bytes.
+Elements locate(const Document& document, const Json& source, const std::string& owner, std::size_t count,
+                std::size_t component, std::size_t element_size) {
+    const int buffer_view = index_in(source, "bufferView");
+    const auto offset = value_in(source, "byteOffset", std::size_t{0});
+    const Bytes bytes = buffer_view_bytes(document, buffer_view);
+    const Json& view = document.at("bufferViews", buffer_view);
+    const std::size_t stride = value_in(view, "byteStride", element_size);
+    if (stride < element_size) {
         throw SceneError(
-            fmt::format("{} has elements of {} bytes, more than the stride of {} of buffer view {}",
-                        run.owner, run.element_size, stride, run.buffer_view));
+            fmt::format("{} has elements of {} bytes, more than the stride of {} of buffer view {}", owner,
+                        element_size, stride, buffer_view));
     }
-    const bool fits = run.offset <= bytes.size() && run.element_size <= bytes.size() - run.offset &&
-                      run.count - 1 <= (bytes.size() - run.offset - run.element_size) / stride;
-    if (!fits) {
-        throw SceneError(fmt::format("{} reads past the end of buffer view {}", run.owner, run.buffer_view));
+    const bool fits = offset <= bytes.size() && element_size <= bytes.size() - offset &&
+                      count - 1 <= (bytes.size() - offset - element_size) / stride;
+    if (!fits) throw SceneError(fmt::format("{} reads past the end of buffer view {}", owner, buffer_view));
+    if ((value_in(view, "byteOffset", std::size_t{0}) + offset) % component != 0) {
+        throw SceneError(fmt::format("{} is not aligned to its components of {} bytes", owner, component));
     }
-    if ((value_in(view, "byteOffset", std::size_t{0}) + run.offset) % run.component_size != 0) {
-        throw SceneError(
-            fmt::format("{} is not aligned to its components of {} bytes", run.owner, run.component_size));
-    }
-    return {bytes.data() + run.offset, stride};
+    return {bytes.data() + offset, stride};
 }
 
 std::size_t component_size(int component_type) {
@@ -145,22 +107,22 @@ bool is_unsigned(int component_type) {
 
 /// Replaces the selected elements that the sparse part of the accessor lists.
 template <class Element, class Decode>
-void apply_sparse(const Document& document, int index, const Selection& selection, Decode decode,
-                  std::size_t element_size, std::vector<Element>& elements) {
+void apply_sparse(const Document& document, int index, const Json& sparse, const Selection& selection,
+                  Decode decode, std::size_t element_size, std::vector<Element>& elements) {
     const Accessor accessor = accessor_at(document, index);
-    const SparseElements& sparse = *accessor.sparse;
-    const int index_type = sparse.indices.component_type;
+    const auto count = sparse.at("count").get<std::size_t>();
+    const int index_type = sparse.at("indices").at("componentType").get<int>();
     if (!is_unsigned(index_type)) {
         throw SceneError(fmt::format("accessor {} has sparse indices that are not unsigned integers", index));
     }
     const std::size_t index_size = component_size(index_type);
     const Elements indices =
-        locate(document, {fmt::format("accessor {} (its sparse indices)", index), sparse.indices.buffer_view,
-                          sparse.indices.offset, sparse.count, index_size, index_size});
-    const Elements values = locate(document, {fmt::format("accessor {} (its sparse values)", index),
-                                              sparse.values.buffer_view, sparse.values.offset, sparse.count,
-                                              component_size(sparse.values.component_type), element_size});
-    for (std::size_t i = 0; i < sparse.count; ++i) {
+        locate(document, sparse.at("indices"), fmt::format("accessor {} (its sparse indices)", index), count,
+               index_size, index_size);
+    const Elements values =
+        locate(document, sparse.at("values"), fmt::format("accessor {} (its sparse values)", index), count,
+               component_size(accessor.component_type), element_size);
+    for (std::size_t i = 0; i < count; ++i) {
         const std::uint32_t at = load_unsigned(indices[i], index_type);
         if (at >= accessor.count) {
             throw SceneError(
@@ -178,34 +140,32 @@ bool has_elements(const Document& document, int index) {
            document.decoded_accessors.contains(index);
 }
 
-/// Where they are.
-Elements locate_elements(const Document& document, int index, const Accessor& accessor, std::size_t component,
-                         std::size_t size) {
-    const auto decoded = document.decoded_accessors.find(index);
-    if (decoded != document.decoded_accessors.end()) return {decoded->second.data(), size};
-    return locate(document, {fmt::format("accessor {}", index), accessor.source.buffer_view,
-                             accessor.source.offset, accessor.count, component, size});
-}
-
 /// The selected elements, each converted from its bytes by `decode`. The caller has checked the accessor's
 /// types. An accessor without a buffer view is all zeros.
 template <class Element, class Decode>
 std::vector<Element> read(const Document& document, int index, const Selection& selection, Decode decode) {
+    const Json& json = document.at("accessors", index);
     const Accessor accessor = accessor_at(document, index);
-    const std::size_t component = component_size(accessor.source.component_type);
+    const std::size_t component = component_size(accessor.component_type);
     const std::size_t size = component * static_cast<std::size_t>(accessor.components);
 
     std::vector<Element> elements{};
     if (!has_elements(document, index)) {
         elements.resize(selection.count(), Element{});
     } else {
-        const Elements source = locate_elements(document, index, accessor, component, size);
+        const auto decoded = document.decoded_accessors.find(index);
+        const Elements source =
+            decoded != document.decoded_accessors.end()
+                ? Elements{decoded->second.data(), size}
+                : locate(document, json, fmt::format("accessor {}", index), accessor.count, component, size);
         elements.reserve(selection.count());
         for (std::size_t i = 0; i < selection.count(); ++i) {
             elements.push_back(decode(source[selection[i]]));
         }
     }
-    if (accessor.sparse) apply_sparse(document, index, selection, decode, size, elements);
+    if (const Json* const sparse = find_member(json, "sparse")) {
+        apply_sparse(document, index, *sparse, selection, decode, size, elements);
+    }
     return elements;
 }
 
@@ -219,7 +179,7 @@ float load_integer(const unsigned char* bytes, bool normalized) {
 
 /// Component `i` of an element whose components are FLOAT or integers of 8 or 16 bits.
 float real_component(const unsigned char* element, std::size_t i, const Accessor& accessor) {
-    const int type = accessor.source.component_type;
+    const int type = accessor.component_type;
     const unsigned char* const bytes = element + i * component_size(type);
     switch (type) {
         case signed_byte:
@@ -236,7 +196,7 @@ float real_component(const unsigned char* element, std::size_t i, const Accessor
 }
 
 bool allows(const Use& use, const Document& document, const Accessor& accessor) {
-    const int type = accessor.source.component_type;
+    const int type = accessor.component_type;
     if (type == floating_point) return true;
     if (type > unsigned_short) return false;
     const bool is_signed = type == signed_byte || type == signed_short;
@@ -310,7 +270,7 @@ Bytes buffer_bytes(const Document& document, const Json& range, int buffer_view)
 ElementLayout layout_of(const Document& document, int index) {
     const Accessor accessor = accessor_at(document, index);
     const auto components = static_cast<std::size_t>(accessor.components);
-    const int type = accessor.source.component_type;
+    const int type = accessor.component_type;
     return {type, components, accessor.count, components * component_size(type)};
 }
 
@@ -363,7 +323,7 @@ template std::vector<glm::mat4> read_reals(const Document&, int, const Selection
 
 std::vector<glm::u16vec4> read_joints(const Document& document, int index, const Selection& selection) {
     const Accessor accessor = accessor_at(document, index);
-    const int type = accessor.source.component_type;
+    const int type = accessor.component_type;
     const bool is_known = (type == unsigned_byte || type == unsigned_short) && !accessor.normalized;
     if (accessor.components != 4 || !is_known) {
         throw misfit(index, "joints", "VEC4 of UNSIGNED_BYTE or UNSIGNED_SHORT");
@@ -391,7 +351,7 @@ std::vector<float> read_key_values(const Document& document, int index, std::siz
 
 std::vector<std::uint32_t> read_indices(const Document& document, int index, std::size_t vertex_count) {
     const Accessor accessor = accessor_at(document, index);
-    const int type = accessor.source.component_type;
+    const int type = accessor.component_type;
     if (accessor.components != 1 || !is_unsigned(type)) {
         throw misfit(index, "indices", "SCALAR of an unsigned integer");
     }

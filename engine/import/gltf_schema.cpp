@@ -65,10 +65,8 @@ Check number(Range range) {
 }
 
 /// KHR_materials_ior: at least 1, or 0.
-Check index_of_refraction() {
-    return [](const Json& value, const Json&) {
-        return value == 0.0 ? Problem{} : check_number(value, {.lowest = 1.0});
-    };
+Problem index_of_refraction(const Json& value, const Json& /*document*/) {
+    return value == 0.0 ? Problem{} : check_number(value, {.lowest = 1.0});
 }
 
 Check numbers(std::size_t length, Range range) {
@@ -91,22 +89,17 @@ Check whole(std::int64_t lowest, std::int64_t highest) {
     };
 }
 
-Check stride() {
-    return [](const Json& value, const Json& document) -> Problem {
-        if (Problem error = whole(4, 252)(value, document)) return error;
-        if (value.get<int>() % 4 != 0) return fmt::format("is {}, not a multiple of 4", value.get<int>());
-        return {};
-    };
+Problem stride(const Json& value, const Json& document) {
+    if (Problem error = whole(4, 252)(value, document)) return error;
+    return value.get<int>() % 4 == 0 ? Problem{} : fmt::format("is {}, not a multiple of 4", value.dump());
 }
 
-Check text() {
-    return [](const Json& value, const Json&) { return value.is_string() ? Problem{} : "is not a string"; };
+Problem text(const Json& value, const Json& /*document*/) {
+    return value.is_string() ? Problem{} : "is not a string";
 }
 
-Check flag() {
-    return [](const Json& value, const Json&) {
-        return value.is_boolean() ? Problem{} : "is not true or false";
-    };
+Problem flag(const Json& value, const Json& /*document*/) {
+    return value.is_boolean() ? Problem{} : "is not true or false";
 }
 
 Check has(std::initializer_list<const char*> members) {
@@ -134,13 +127,9 @@ Check has_its_kind(std::vector<std::string_view> kinds) {
     };
 }
 
-Check version() {
-    return [](const Json& value, const Json&) -> Problem {
-        if (!value.is_string()) return "is not a string";
-        const auto number = value.get<std::string>();
-        return number.starts_with("2.") ? Problem{}
-                                        : fmt::format("is \"{}\"; only 2.0 is read", readable(number));
-    };
+Problem version(const Json& value, const Json& /*document*/) {
+    const bool is_read = value.is_string() && value.get<std::string>().starts_with("2.");
+    return is_read ? Problem{} : fmt::format("is {}; only 2.0 is read", readable(value.dump()));
 }
 
 Check one_of(const Json& values) {
@@ -181,10 +170,10 @@ std::vector<Rule> rules() {
 
     std::vector<Rule> all = {
         {"asset", has({"version"})},
-        {"asset.version", version()},
-        {"extensionsUsed|extensionsRequired.[]", text()},
-        {"images|materials|meshes|cameras|nodes|animations.[].name", text()},
-        {"buffers|images.[].uri", text()},
+        {"asset.version", version},
+        {"extensionsUsed|extensionsRequired.[]", text},
+        {"images|materials|meshes|cameras|nodes|animations.[].name", text},
+        {"buffers|images.[].uri", text},
 
         {"buffers.[]", has({"byteLength"})},
         {"bufferViews.[]", has({"buffer", "byteLength"})},
@@ -195,8 +184,8 @@ std::vector<Rule> rules() {
         {meshopt + ".byteOffset", whole(0, any_size)},
         {"buffers|bufferViews.[].byteLength", whole(1, any_size)},
         {meshopt + ".byteLength", whole(1, any_size)},
-        {"bufferViews.[].byteStride", stride()},
-        {"buffers.[].extensions.EXT_meshopt_compression.fallback", flag()},
+        {"bufferViews.[].byteStride", stride},
+        {"buffers.[].extensions.EXT_meshopt_compression.fallback", flag},
         {meshopt + ".byteStride", whole(1, 256)},
         {meshopt + ".count", whole(1, most_elements)},
         {meshopt + ".mode", one_of({"ATTRIBUTES", "TRIANGLES", "INDICES"})},
@@ -206,7 +195,7 @@ std::vector<Rule> rules() {
         {"accessors.[].componentType", whole(signed_byte, floating_point)},
         {"accessors.[].count", whole(1, most_elements)},
         {"accessors.[].type", one_of({"SCALAR", "VEC2", "VEC3", "VEC4", "MAT2", "MAT3", "MAT4"})},
-        {"accessors.[].normalized", flag()},
+        {"accessors.[].normalized", flag},
         {"accessors.[].sparse", has({"count", "indices", "values"})},
         {"accessors.[].sparse.count", whole(1, std::numeric_limits<int>::max())},
         {"accessors.[].sparse.indices", has({"bufferView", "componentType"})},
@@ -219,7 +208,7 @@ std::vector<Rule> rules() {
         {"textures.[].sampler", index_into("samplers")},
         {"textures.[].source", image},
         {"textures.[].extensions.EXT_texture_webp|KHR_texture_basisu.source", image},
-        {"materials.[].doubleSided", flag()},
+        {"materials.[].doubleSided", flag},
         {"materials.[].alphaMode", one_of({AlphaMode::opaque, AlphaMode::mask, AlphaMode::blend})},
         {"materials.[].alphaCutoff", number(not_negative)},
         {"materials.[].emissiveFactor", numbers(3, not_negative)},
@@ -228,7 +217,7 @@ std::vector<Rule> rules() {
         {"materials.[].pbrMetallicRoughness.baseColorFactor", numbers(4, unit)},
         {"materials.[].pbrMetallicRoughness.metallicFactor|roughnessFactor", number(unit)},
         {"materials.[].extensions.KHR_materials_emissive_strength.emissiveStrength", number(not_negative)},
-        {"materials.[].extensions.KHR_materials_ior.ior", index_of_refraction()},
+        {"materials.[].extensions.KHR_materials_ior.ior", index_of_refraction},
         {"materials.[].extensions.KHR_materials_transmission.transmissionFactor", number(unit)},
         {"materials.[].extensions.KHR_materials_specular.specularFactor", number(unit)},
         {"materials.[].extensions.KHR_materials_specular.specularColorFactor", numbers(3, not_negative)},
@@ -257,14 +246,14 @@ std::vector<Rule> rules() {
 
         {"extensions.KHR_lights_punctual", has({"lights"})},
         {lights, has({"type"})},
-        {lights + ".name|type", text()},
+        {lights + ".name|type", text},
         {lights, has_its_kind({"spot"})},
         {lights + ".color", numbers(3, unit)},
         {lights + ".intensity", number(not_negative)},
         {lights + ".range", number(positive)},
         {lights + ".spot.innerConeAngle", number(inner_cone)},
         {lights + ".spot.outerConeAngle", number(outer_cone)},
-        {lights + ".extensions.CANDELA_light.castsShadow", flag()},
+        {lights + ".extensions.CANDELA_light.castsShadow", flag},
 
         {"nodes.[].mesh", index_into("meshes")},
         {"nodes.[].skin", index_into("skins")},
@@ -292,9 +281,9 @@ std::vector<Rule> rules() {
         {"animations.[].channels.[].sampler", index},
         {"animations.[].channels.[].target", has({"path"})},
         {"animations.[].channels.[].target.node", node},
-        {"animations.[].channels.[].target.path", text()},
+        {"animations.[].channels.[].target.path", text},
         {"scenes.[].nodes.[]", node},
-        {environment + ".name|uri", text()},
+        {environment + ".name|uri", text},
         {environment + ".radiance", numbers(3, not_negative)},
         {environment + ".bufferView", buffer_view},
         {environment + ".rotation", number(any)},

@@ -443,21 +443,17 @@ TEST_CASE("tangents that are malformed, and factors out of range") {
     infinite[6] = std::numeric_limits<float>::infinity();
     CHECK(with_tangents(infinite, "VEC4", 4) == "mesh 0: accessor 3 has a NaN or infinity in element 1");
 
-    const auto with_material = [](const char* member, const char* json) {
-        GltfBuilder file = bumpy();
-        file.document["materials"][0][member] = Json::parse(json);
-        return error_of(file);
-    };
-    CHECK(with_material("normalTexture", R"({"index": 0, "scale": "1"})") ==
-          "materials[0].normalTexture.scale is not a number");
-    CHECK(with_material("normalTexture", R"({"index": 0, "scale": 1e39})") ==
-          "materials[0].normalTexture.scale is 1e+39, which is out of range");
-    CHECK(with_material("occlusionTexture", R"({"index": 0, "strength": 1.5})") ==
-          "materials[0].occlusionTexture.strength is 1.5, which is out of range");
-    CHECK(with_material("occlusionTexture", R"({"index": 0, "strength": -0.5})") ==
-          "materials[0].occlusionTexture.strength is -0.5, which is out of range");
-    CHECK(with_material("occlusionTexture", R"({"index": 1})") ==
-          "materials[0].occlusionTexture.index is 1, but there are 1 textures");
+    GltfBuilder file = bumpy();
+    file.document["materials"][0]["occlusionTexture"] = {{"index", 0}};
+    check_defects(
+        {
+            {"/materials/0/normalTexture/scale", R"("1")", "@ is not a number"},
+            {"/materials/0/normalTexture/scale", "1e39", "@ is 1e+39, which is out of range"},
+            {"/materials/0/occlusionTexture/strength", "1.5", "@ is 1.5, which is out of range"},
+            {"/materials/0/occlusionTexture/strength", "-0.5", "@ is -0.5, which is out of range"},
+            {"/materials/0/occlusionTexture/index", "1", "@ is 1, but there are 1 textures"},
+        },
+        file);
 }
 
 TEST_CASE("alpha modes and their cutoff") {
