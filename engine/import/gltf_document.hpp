@@ -37,8 +37,11 @@ struct Document {
 };
 
 /// Parses and checks .gltf or .glb, distinguished by their first bytes, and loads the buffers. Throws
-/// SceneError for malformed data; extensions that are not supported are warnings. The document refers to
-/// `bytes`.
+/// SceneError for malformed data, and std::runtime_error for text that is no JSON; extensions that are not
+/// supported are warnings. The document refers to `bytes`.
+///
+/// TinyGLTF, which the tests compare this with, skips members of a wrong type without a word, copies the
+/// binary chunk for each buffer without a URI, and refuses what only Draco or meshoptimizer can fill.
 [[nodiscard]] Document read_document(Bytes bytes, ImportFiles& files, ImportBudget& budget);
 
 }  // namespace candela::gltf

@@ -262,6 +262,16 @@ TEST_CASE("text that is not JSON has one error, with its line and column and wha
     CHECK(too_large[0].find("1e999") != std::string::npos);
 }
 
+TEST_CASE(
+    "of members with the same name the last counts, and nesting has a limit, which texts do not reach") {
+    CHECK(read_configuration(R"({"path": "forward", "path": "deferred"})").configuration->path ==
+          ShadingPath::deferred);
+    const auto nested = [](std::size_t depth) { return std::string(depth, '[') + std::string(depth, ']'); };
+    CHECK(errors_of(nested(256)) == GraphErrors{"not a JSON object"});
+    CHECK(errors_of(nested(257)) == GraphErrors{"its JSON is nested too deeply"});
+    CHECK(errors_of("[\"\\\"" + nested(300) + "\"]") == GraphErrors{"not a JSON object"});
+}
+
 TEST_CASE("values out of range and NaN are errors") {
     Configuration c;
     c.vpls.placement = VplPlacement::paths;
