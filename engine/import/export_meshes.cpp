@@ -73,8 +73,8 @@ Json add_vertices(const std::vector<Vertex>& vertices, Draft& draft) {
         attributes[attribute.name] = draft.add_accessor(view, attribute.component_type, attribute.type,
                                                         vertices.size(), std::move(members));
     };
-    std::vector<glm::vec3> positions;
-    for (const Vertex& vertex : vertices) positions.push_back(vertex.position);
+    std::vector<glm::vec3> positions(vertices.size());
+    std::ranges::transform(vertices, positions.begin(), &Vertex::position);
     add(position, bounds_of(positions));
     add(normal);
     add(uv);

@@ -76,7 +76,7 @@ Elements locate(const Document& document, const Json& source, const std::string&
     return {bytes.data() + offset, stride};
 }
 
-std::size_t component_size(int component_type) {
+constexpr std::size_t component_size(int component_type) {
     switch (component_type) {
         case signed_byte:
         case unsigned_byte:
@@ -293,7 +293,7 @@ void check_count(const Document& document, const Json& primitive, int accessor, 
 template <class Element>
 std::vector<Element> read_reals(const Document& document, int index, const Selection& selection,
                                 const Use& use) {
-    using Parts = std::array<float, sizeof(Element) / sizeof(float)>;
+    using Parts = std::array<float, sizeof(Element) / component_size(floating_point)>;
     constexpr int most = std::tuple_size_v<Parts>;
     const Accessor accessor = accessor_at(document, index);
     const bool fits = accessor.components == most || (use.has_optional_alpha && accessor.components == 3);
