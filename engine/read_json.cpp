@@ -1,6 +1,7 @@
 #include "engine/read_json.hpp"
 
 #include <algorithm>
+#include <cstddef>
 #include <stdexcept>
 
 #include <fmt/format.h>
@@ -14,9 +15,9 @@ namespace {
 
 /// How deeply arrays and objects are nested. The parser could ask after each value, but then it looks at all
 /// items of an array after each object in it.
-int depth_of(std::string_view text) {
-    int depth = 0;
-    int deepest = 0;
+std::ptrdiff_t depth_of(std::string_view text) {
+    std::ptrdiff_t depth = 0;
+    std::ptrdiff_t deepest = 0;
     bool in_string = false;
     for (std::size_t i = 0; i < text.size(); ++i) {
         const char c = text[i];
@@ -36,8 +37,7 @@ nlohmann::json parse_json(std::string_view text) {
     try {
         return nlohmann::json::parse(text);
     } catch (const nlohmann::json::exception& error) {
-        const std::string_view message =
-            error.what();  // [json.exception.parse_error.101] ...; last read: ...
+        const std::string_view message = error.what();  // [json.exception.parse_error.101] ...
         const std::string_view fault = message.substr(message.find("] ") + 2);
         throw std::runtime_error(
             fmt::format("invalid JSON: {}", readable(fault.substr(0, fault.find("; last read: ")))));
