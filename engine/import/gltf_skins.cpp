@@ -1,9 +1,12 @@
 #include "engine/import/gltf_skins.hpp"
 
+#include <limits>
 #include <string>
 #include <utility>
 
 #include <fmt/format.h>
+#include <glm/common.hpp>
+#include <glm/vector_relational.hpp>
 
 #include <candela/scene/scene_error.hpp>
 #include "engine/import/naming.hpp"
@@ -11,6 +14,12 @@
 namespace candela::gltf {
 
 namespace {
+
+/// Where exporters make weights add up to 1, rounding errors are left of some that are 0, also below it.
+glm::vec4 without_rounding(const glm::vec4& weights) {
+    constexpr float rounding = std::numeric_limits<float>::epsilon();
+    return glm::mix(weights, glm::vec4(0.0F), glm::lessThan(glm::abs(weights), glm::vec4(rounding)));
+}
 
 ReadSkin read_skin(const Document& document, const Json& source, ImportBudget& budget) {
     ReadSkin skin;
@@ -65,7 +74,7 @@ std::vector<std::vector<Influences>> read_influences(const Document& document, c
         std::vector<Influences>& set = sets.emplace_back();
         set.reserve(selection.count());
         for (std::size_t i = 0; i < selection.count(); ++i) {
-            set.push_back({read_of_joints[i], read_of_weights[i]});
+            set.push_back({read_of_joints[i], without_rounding(read_of_weights[i])});
         }
     }
 }

@@ -90,6 +90,10 @@ TEST_CASE("joints and weights of every type") {
         attributes["WEIGHTS_0"] = file.add_accessor(
             std::vector<std::uint8_t>{255, 0, 0, 0, 51, 0, 0, 0, 102, 0, 0, 0}, 5121, "VEC4", 4);
     }
+    SUBCASE("floats, of which rounding has put one below 0") {
+        attributes["WEIGHTS_0"] =
+            file.add_accessor(Floats{1, -2e-16F, 0, 0, 1, 0, -1e-7F, 0, 1, 0, 0, 0}, 5126, "VEC4", 4);
+    }
     for (Json& accessor : file.document["accessors"]) {
         const bool is_short = accessor["componentType"] == 5123 && accessor["type"] == "VEC4";
         const bool is_weights = &accessor == &file.document["accessors"].back();
