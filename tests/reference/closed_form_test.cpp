@@ -21,6 +21,7 @@ TEST_CASE("a plane under a directional light") {
 
 TEST_CASE("a plane under a rectangle that emits light") {
     CHECK(plane_under_rectangle());
+    CHECK(plane_under_half_a_rectangle());
 }
 TEST_CASE("a plane under the sky: uniform, beside a wall, and of one bright texel") {
     CHECK(plane_under_uniform_sky());
@@ -36,7 +37,7 @@ TEST_CASE("a sphere that emits light everywhere is equally bright everywhere") {
 }
 
 TEST_CASE("a sphere lit from its centre is equally bright everywhere") {
-    for (const double albedo : {0.2, 0.5, 0.9}) {
+    for (const double albedo : {0.2, 0.5, 0.9, 0.99}) {
         CAPTURE(albedo);
         CHECK(sphere_furnace(albedo));
     }

@@ -16,6 +16,8 @@ namespace candela::reference {
 
 /// A plane of albedo 1/2 under a rectangle that emits light: Lambert's formula, in the mean of the picture.
 [[nodiscard]] bool plane_under_rectangle();
+/// The same where the left half of the rectangle is the hole of a mask.
+[[nodiscard]] bool plane_under_half_a_rectangle();
 
 /// The middle of a plane of albedo 1/2 under a uniform sky: ρ L. Beside an endless wall of height h, at a
 /// distance d: the wall hides (1 - d / √(d² + h²)) / 2 of it. Under a sky with one bright texel: its tent of

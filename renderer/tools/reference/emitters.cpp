@@ -31,6 +31,8 @@ glm::vec3 by_drawing_a_point(const SceneContent& scene, const Surface& receiver,
     const float v = sampler.next();
     const Emitters::Draw drawn = scene.emitters.draw(which, {u, v});
     const Triangle& triangle = scene.geometry.triangle(drawn.triangle);
+    const SurfaceMaterial& material = scene.geometry.material(triangle);
+    if (material.is_hole(colour_at(triangle, material, drawn.weights))) return glm::vec3(0.0F);
     const glm::vec3 direction = position_at(triangle, drawn.weights) - receiver.position;
     const Surface emitter = struck_surface(scene.geometry, {0.0F, drawn.triangle, drawn.weights}, direction);
     if (emitter.emission == glm::vec3(0.0F) || !are_connected(scene.geometry, receiver, emitter)) {

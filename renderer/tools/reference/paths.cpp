@@ -14,9 +14,10 @@ namespace {
 // Below this throughput, paths end by Russian roulette, with a survival probability proportional to it.
 constexpr float little = 0.25F;
 // After this many bounces, paths may end whatever their throughput: in a white room they would not end
-// otherwise.
+// otherwise. The variance is finite as long as the square of the albedo is less than the survival
+// probability.
 constexpr std::uint32_t many_bounces = 16;
-constexpr float survival_after_many = 0.9F;
+constexpr float survival_after_many = 0.999F;
 // Without caustics, lobes up to this alpha (a roughness of 0.3) show glossy surfaces as they are.
 constexpr float greatest_alpha_that_shows_gloss = 0.09F;
 
