@@ -229,7 +229,7 @@ struct SkyPatch {
     float pad0 DEFAULT(0.0);
 };
 
-// A sample point of a surfel's cell; represents a part of the surface.
+// A sample point of a surfel's cell; represents a part of the surface. None is in a hole of a mask.
 struct CellPoint {
     vec3 position;  // metres
     uint material;
@@ -243,13 +243,13 @@ struct CellPoint {
 // Light that a cell point receives from the lights and from surfaces that emit light, and that it emits.
 struct DirectPoint {
     vec3 arriving;  // flux
-    float area;     // m²; 0: in a hole of a mask
-    vec3 albedo;    // linear
     float pad0 DEFAULT(0.0);
-    vec3 emitted;   // flux
+    vec3 albedo;    // linear
     float pad1 DEFAULT(0.0);
-    vec3 from_emitters;  // the part of `arriving` that comes from surfaces that emit light
+    vec3 emitted;   // flux
     float pad2 DEFAULT(0.0);
+    vec3 from_emitters;  // the part of `arriving` that comes from surfaces that emit light
+    float pad3 DEFAULT(0.0);
 };
 
 // A cell point with all the light that it reflects.
@@ -275,7 +275,7 @@ struct CellLight {
     vec3 from_emitters;  // the part of `arriving` that comes from surfaces that emit light
     float pad4 DEFAULT(0.0);
     vec3 albedo;    // mean over the area of its points
-    float area;     // m², of its points that have an area
+    float area;     // m²
     vec3 indirect;  // irradiance from the other surfels, sum over all bounces
     float pad1 DEFAULT(0.0);
 };

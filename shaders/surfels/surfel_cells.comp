@@ -1,4 +1,4 @@
-// Sums up the points of a cell: its flux, mean albedo, area, and the disc that its emitted and directly
+// Sums up the points of a cell: its flux, mean albedo, and the disc that its emitted and directly
 // reflected flux comes from.
 // One invocation per surfel.
 #include "surfels/surfel.glsl"
@@ -19,28 +19,27 @@ void main() {
     vec3 emitted = vec3(0.0);
     vec3 from_emitters = vec3(0.0);
     vec3 albedo = vec3(0.0);
-    float area = 0.0;
     float weight = 0.0;
     vec3 first = vec3(0.0);   // first and second moments of the flux's position relative to the surfel
     float second = 0.0;
     for (uint i = 0u; i < surfel.point_count; ++i) {
         DirectPoint point = direct_points[surfel.first_point + i];
+        CellPoint place = cell_points[surfel.first_point + i];
         vec3 flux = point.albedo * point.arriving + point.emitted;
         emitted += point.emitted;
         from_emitters += point.from_emitters;
         arriving += point.arriving;
         direct += flux;
-        albedo += point.area * point.albedo;
-        area += point.area;
+        albedo += place.area * point.albedo;
         float w = dot(flux, vec3(1.0));
-        vec3 off = cell_points[surfel.first_point + i].position - surfel.position;
+        vec3 off = place.position - surfel.position;
         weight += w;
         first += w * off;
         second += w * dot(off, off);
     }
     CellLight cell = CellLight(surfel.position, surfel.area / PI, arriving, 0.0, direct, 0.0, emitted, 0.0,
-                               from_emitters, 0.0, vec3(0.0), area, vec3(0.0), 0.0);
-    if (area > 0.0) cell.albedo = albedo / area;
+                               from_emitters, 0.0, vec3(0.0), surfel.area, vec3(0.0), 0.0);
+    if (surfel.area > 0.0) cell.albedo = albedo / surfel.area;
     if (weight > 0.0) {
         vec3 mean = first / weight;
         cell.centre += mean;

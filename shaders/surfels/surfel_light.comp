@@ -186,18 +186,18 @@ void main() {
     Material material = materials[point.material];
     bool is_emission_uv = has_second_uv(point.material, MATERIAL_SECOND_UV_EMISSIVE);
     vec4 texture_colour = is_emission_uv ? material.base_colour : colour_at(material, point.uv);
-    vec4 colour = texture_colour * vertex_colour(point.colour);
-    float area = colour.a < material.alpha_cutoff ? 0.0 : point.area;
+    vec3 colour = texture_colour.rgb * vertex_colour(point.colour).rgb;
     vec3 irradiance = vec3(0.0);
     uint end = min(light_count, part_first + part_size);
-    for (uint i = part_first; i < end && area > 0.0; ++i) irradiance += irradiance_from(lights[i], point, id);
-    if (part_first == 0u && area > 0.0) irradiance += irradiance_from_sky(id, point);
-    vec3 arriving = area * irradiance;
+    for (uint i = part_first; i < end; ++i) irradiance += irradiance_from(lights[i], point, id);
+    if (part_first == 0u) irradiance += irradiance_from_sky(id, point);
+    vec3 arriving = point.area * irradiance;
     if (part_first > 0u) {
         direct_points[id].arriving += arriving;
         return;
     }
-    vec3 emitted = area * PI * emission_at(material, point.uv);
-    vec3 from_emitters = emitting_count > 0u && area > 0.0 ? area * irradiance_from_emitters(id, point) : vec3(0.0);
-    direct_points[id] = DirectPoint(arriving + from_emitters, area, traced_albedo(material, colour.rgb), 0.0, emitted, 0.0, from_emitters, 0.0);
+    vec3 emitted = point.area * PI * emission_at(material, point.uv);
+    vec3 from_emitters = emitting_count > 0u ? point.area * irradiance_from_emitters(id, point) : vec3(0.0);
+    direct_points[id] = DirectPoint(arriving + from_emitters, 0.0, traced_albedo(material, colour), 0.0, emitted, 0.0,
+                                    from_emitters, 0.0);
 }

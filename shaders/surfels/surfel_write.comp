@@ -27,8 +27,8 @@ void write_points(Surfel surfel, vec3 indirect, Shown shown) {
     for (uint i = surfel.first_point; i < surfel.first_point + surfel.point_count; ++i) {
         CellPoint point = cell_points[i];
         DirectPoint direct = direct_points[i];
-        vec3 reflected = direct.albedo * (direct.arriving + direct.area * indirect);
-        vec3 flux = emitted_share * direct.emitted + reflected_share * reflected - direct.area * shown.mean;
+        vec3 reflected = direct.albedo * (direct.arriving + point.area * indirect);
+        vec3 flux = emitted_share * direct.emitted + reflected_share * reflected - point.area * shown.mean;
         lit_points[i] = LitPoint(point.position, shown.own * point.area, point.normal, 0.0, shown.own * flux, 0.0);
     }
 }

@@ -27,7 +27,7 @@ namespace {
 
 /// A square of 2 m, of two triangles.
 SceneTriangles square_triangles() {
-    SceneTriangles scene{.triangles = {}, .item_of = {0, 0}, .double_sided = {false}, .emits = {false}};
+    SceneTriangles scene{.triangles = {}, .item_of = {0, 0}, .materials = {diffuse(glm::vec3(0.5F))}};
     for (const float side : {1.0F, -1.0F}) {
         gpu::TraceTriangle triangle{};
         triangle.a = {side, side, 0.0F};

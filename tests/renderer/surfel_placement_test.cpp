@@ -14,6 +14,7 @@
 
 #include "renderer/passes/surfels/surfel_placement.hpp"
 #include "renderer/passes/surfels/surfel_spread.hpp"
+#include "tests/renderer/scene_builder.hpp"
 #include "tests/seed.hpp"
 
 TEST_SUITE("surfels: placement") {
@@ -39,7 +40,7 @@ void add_parallelogram(SceneTriangles& scene, std::uint32_t item, glm::vec3 corn
 
 /// The six sides of a cube with edges of 2 m, each with its own normal.
 SceneTriangles cube() {
-    SceneTriangles scene{.triangles = {}, .item_of = {}, .double_sided = {false}, .emits = {false}};
+    SceneTriangles scene{.triangles = {}, .item_of = {}, .materials = {diffuse(glm::vec3(0.5F))}};
     for (int axis = 0; axis < 3; ++axis) {
         for (const float side : {-1.0F, 1.0F}) {
             glm::vec3 normal(0.0F), u(0.0F);
@@ -59,7 +60,7 @@ SurfelSet placed(const SceneTriangles& scene, const SurfelCounts& counts, std::u
 
 /// From -1 to 1 along x and y.
 SceneTriangles square() {
-    SceneTriangles scene{.triangles = {}, .item_of = {}, .double_sided = {false}, .emits = {false}};
+    SceneTriangles scene{.triangles = {}, .item_of = {}, .materials = {diffuse(glm::vec3(0.5F))}};
     add_parallelogram(scene, 0, {-1, -1, 0}, {2, 0, 0}, {0, 2, 0});
     return scene;
 }
@@ -136,10 +137,10 @@ TEST_CASE("a cell is flat, on one side of the surface, and near its surfel") {
 }
 
 TEST_CASE("double-sided surfaces have surfels on both sides, others on their front") {
-    SceneTriangles sheet{.triangles = {}, .item_of = {}, .double_sided = {false}, .emits = {false}};
+    SceneTriangles sheet{.triangles = {}, .item_of = {}, .materials = {diffuse(glm::vec3(0.5F))}};
     add_parallelogram(sheet, 0, {0, 0, 0}, {1, 0, 0}, {0, 1, 0});
     for (const bool both : {false, true}) {
-        sheet.double_sided[0] = both;
+        sheet.materials.set(0, diffuse(glm::vec3(0.5F), both));
         const SurfelSet set = placed(sheet, {.reflecting = 50}, 0);
         const auto front = std::ranges::count_if(
             set.surfels, [](const gpu::Surfel& surfel) { return surfel.normal.z > 0.5F; });
@@ -149,8 +150,39 @@ TEST_CASE("double-sided surfaces have surfels on both sides, others on their fro
     }
 }
 
+TEST_CASE("no point is in a hole of a mask, and cells have the area of what is left") {
+    // The left half of the square is a hole: alpha reaches the cutoff midway between the two texels.
+    Material material = *diffuse(glm::vec3(0.5F), true);
+    material.alpha_mode = AlphaMode::mask;
+    material.base_colour_texture = std::make_shared<const Image>(Image{
+        .width = 2, .height = 1, .texels = {{0, 0, 0, 0}, {0, 0, 0, 255}}, .wrap_u = Wrap::clamp_to_edge});
+    SceneTriangles scene = square();
+    scene.materials = {std::make_shared<const Material>(std::move(material))};
+    for (gpu::TraceTriangle& triangle : scene.triangles) {
+        const auto uv_of = [](glm::vec3 corner) { return 0.5F * glm::vec2(corner) + 0.5F; };
+        triangle.uv_a = uv_of(triangle.a);
+        triangle.uv_b = uv_of(triangle.a + triangle.edge_ab);
+        triangle.uv_c = uv_of(triangle.a + triangle.edge_ac);
+        triangle.colour_a = triangle.colour_b = triangle.colour_c = 0xffffffffU;
+    }
+    const SurfelSet set = placed(scene, {.reflecting = 100}, test_seed());
+    for (const gpu::CellPoint& point : set.points) CHECK(point.position.x >= 0.0F);
+    for (const gpu::Surfel& surfel : set.surfels) {
+        REQUIRE(surfel.point_count > 0);
+        CHECK(surfel.position.x >= 0.0F);
+        double area = 0.0;
+        for (std::uint32_t p = 0; p < surfel.point_count; ++p) {
+            area += static_cast<double>(set.points[surfel.first_point + p].area);
+        }
+        CHECK(static_cast<double>(surfel.area) == doctest::Approx(area));
+    }
+    // Both sides of the right half have 2 m² each. Of 1,600 parts, about 60 are cut by the edge, and each has
+    // a point on either side of it at random: √60 / 2 parts.
+    CHECK(total_area(set) == doctest::Approx(4.0).epsilon(0.03));
+}
+
 TEST_CASE("no cell extends to another item, even in the same plane") {
-    SceneTriangles two{.triangles = {}, .item_of = {}, .double_sided = {false}, .emits = {false}};
+    SceneTriangles two{.triangles = {}, .item_of = {}, .materials = {diffuse(glm::vec3(0.5F))}};
     add_parallelogram(two, 0, {0, 0, 0}, {1, 0, 0}, {0, 1, 0});
     add_parallelogram(two, 1, {1, 0, 0}, {1, 0, 0}, {0, 1, 0});
     const SurfelSet set = placed(two, {.reflecting = 40}, test_seed());
@@ -165,7 +197,7 @@ TEST_CASE("no cell extends to another item, even in the same plane") {
 TEST_CASE("surfels are dense in a focus, less so beyond it, and cover all of the surface") {
     constexpr float half = 500.0F;
     constexpr float radius = 5.0F;
-    SceneTriangles plane{.triangles = {}, .item_of = {}, .double_sided = {false}, .emits = {false}};
+    SceneTriangles plane{.triangles = {}, .item_of = {}, .materials = {diffuse(glm::vec3(0.5F))}};
     add_parallelogram(plane, 0, {-half, -half, 0}, {2 * half, 0, 0}, {0, 2 * half, 0});
     const Focus focus{glm::vec3(3.0F, -2.0F, 0.0F), radius};
     const SurfelSet set = placed(plane, {.reflecting = 1000}, test_seed(), {{focus}});
@@ -210,7 +242,7 @@ TEST_CASE("a guide without light changes nothing") {
 }
 
 TEST_CASE("most surfels stay where a focus moves a little, and where it was before does not matter") {
-    SceneTriangles plane{.triangles = {}, .item_of = {}, .double_sided = {false}, .emits = {false}};
+    SceneTriangles plane{.triangles = {}, .item_of = {}, .materials = {diffuse(glm::vec3(0.5F))}};
     add_parallelogram(plane, 0, {-500, -500, 0}, {1000, 0, 0}, {0, 1000, 0});
     const auto focus_at = [](float x) {
         return std::vector<std::vector<Focus>>{{Focus{.centre = {x, 2.0F, 0.0F}, .radius = 5.0F}}};
@@ -307,7 +339,7 @@ TEST_CASE("where items come and go, a set that follows keeps the cells of the ot
 
 TEST_CASE("of many items some have surfels, which stand for all") {
     constexpr int count = 3000;
-    SceneTriangles many{.triangles = {}, .item_of = {}, .double_sided = {false}, .emits = {false}};
+    SceneTriangles many{.triangles = {}, .item_of = {}, .materials = {diffuse(glm::vec3(0.5F))}};
     double area = 0.0;
     for (int i = 0; i < count; ++i) {
         const float size = i % 7 == 0 ? 2.0F : 0.5F;
@@ -329,7 +361,7 @@ TEST_CASE("of many items some have surfels, which stand for all") {
 }
 
 TEST_CASE("triangles without an area have no surfels and do no harm") {
-    SceneTriangles scene{.triangles = {}, .item_of = {}, .double_sided = {true}, .emits = {false}};
+    SceneTriangles scene{.triangles = {}, .item_of = {}, .materials = {diffuse(glm::vec3(0.5F), true)}};
     add_parallelogram(scene, 0, {0, 0, 0}, {1, 0, 0}, {2, 0, 0});
     CHECK(placed(scene, {.reflecting = 20}, test_seed()).surfels.empty());
     add_parallelogram(scene, 0, {0, 0, 0}, {1, 0, 0}, {0, 1, 0});

@@ -10,17 +10,10 @@
 #include <glm/vec2.hpp>
 
 #include "engine/bvh/traverse.hpp"
-#include "renderer/passes/scene/image_texel.hpp"
 #include "renderer/passes/scene/world_triangles.hpp"
 
 namespace candela {
 namespace {
-
-float alpha_at(const Material& material, glm::vec2 uv) {
-    const Image* const image = material.base_colour_texture.get();
-    if (image == nullptr) return material.base_colour.a;
-    return material.base_colour.a * static_cast<float>(texel_at(*image, uv).a) / 255.0F;
-}
 
 /// One solid drawable of a scene, as rays meet it.
 struct TracedObject {
@@ -36,13 +29,8 @@ struct TracedObject {
     [[nodiscard]] bool has_hole(const Hit& hit) const {
         const Material& material = *drawable.primitive().material;
         if (material.alpha_mode != AlphaMode::mask) return false;
-        const gpu::TraceTriangle t = trace_triangle(scene.layout, drawable, vertices, hit.triangle, world, 0);
-        const auto alpha_of = [](std::uint32_t colour) { return static_cast<float>(colour >> 24U) / 255.0F; };
-        const float a = 1.0F - hit.u - hit.v;
-        const float of_vertices =
-            a * alpha_of(t.colour_a) + hit.u * alpha_of(t.colour_b) + hit.v * alpha_of(t.colour_c);
-        const glm::vec2 uv = a * t.uv_a + hit.u * t.uv_b + hit.v * t.uv_c;
-        return of_vertices * alpha_at(material, uv) < material.alpha_cutoff;
+        return is_hole(material, trace_triangle(scene.layout, drawable, vertices, hit.triangle, world, 0),
+                       {hit.u, hit.v});
     }
 };
 

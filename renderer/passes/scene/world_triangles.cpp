@@ -7,6 +7,8 @@
 #include <glm/matrix.hpp>
 #include <glm/packing.hpp>
 
+#include "renderer/passes/scene/image_texel.hpp"
+
 namespace candela {
 namespace {
 
@@ -111,6 +113,20 @@ gpu::TraceTriangle trace_triangle(const SceneLayout& layout, const SceneLayout::
             .normal_a = packed_normal(to_world * vertices[corner.x].normal),
             .normal_b = packed_normal(to_world * vertices[corner.y].normal),
             .normal_c = packed_normal(to_world * vertices[corner.z].normal)};
+}
+
+bool is_hole(const Material& material, const gpu::TraceTriangle& triangle, glm::vec2 weights) {
+    if (material.alpha_mode != AlphaMode::mask) return false;
+    const auto interpolated = [&](const auto& a, const auto& b, const auto& c) {
+        return a + weights.x * (b - a) + weights.y * (c - a);
+    };
+    const auto alpha_of = [](std::uint32_t colour) { return static_cast<float>(colour >> 24U) / 255.0F; };
+    const Image* const image = material.base_colour_texture.get();
+    const glm::vec2 uv = interpolated(triangle.uv_a, triangle.uv_b, triangle.uv_c);
+    const float of_vertices =
+        interpolated(alpha_of(triangle.colour_a), alpha_of(triangle.colour_b), alpha_of(triangle.colour_c));
+    const float of_image = image == nullptr ? 1.0F : alpha_at(*image, uv);
+    return of_vertices * material.base_colour.a * of_image < material.alpha_cutoff;
 }
 
 }  // namespace candela

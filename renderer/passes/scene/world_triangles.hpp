@@ -38,4 +38,8 @@ namespace candela {
                                                 std::span<const Vertex> vertices, std::uint32_t i,
                                                 const glm::mat4& world, std::uint32_t id);
 
+/// Whether there is a hole of the material's alpha mask at a point of a triangle with these weights of its
+/// corners b and c.
+[[nodiscard]] bool is_hole(const Material& material, const gpu::TraceTriangle& triangle, glm::vec2 weights);
+
 }  // namespace candela

@@ -12,6 +12,7 @@
 #include <utility>
 
 #include "renderer/passes/scene/image_texel.hpp"
+#include "renderer/passes/scene/world_triangles.hpp"
 
 namespace candela {
 namespace {
@@ -91,11 +92,11 @@ void SurfelPlacement::plant() {
 std::vector<SurfelPlacement::Root> SurfelPlacement::roots_of(bool emitting) {
     std::map<std::uint32_t, std::vector<Fragment>> fragments;  // by item
     for (std::uint32_t i = 0; i < scene_.triangles.size(); ++i) {
-        const std::uint32_t material = scene_.triangles[i].material;
-        if (scene_.emits[material] != emitting) continue;
+        const Material& material = *scene_.materials[scene_.triangles[i].material];
+        if (emits(material) != emitting) continue;
         std::vector<Fragment>& of_item = fragments[scene_.item_of[i]];
         of_item.push_back({.triangle = i});
-        if (scene_.double_sided[material]) of_item.push_back({.triangle = i, .back = true});
+        if (material.double_sided) of_item.push_back({.triangle = i, .back = true});
     }
     std::vector<Root> roots;
     for (auto& [item, of_item] : fragments) {
@@ -268,7 +269,7 @@ SurfelPlacement::CutCells SurfelPlacement::cells_on(const std::vector<Root>& roo
     return of;
 }
 
-/// Appends the surfel of a cell.
+/// Appends the surfel of a cell, unless all of its points are in holes.
 void SurfelPlacement::append(SurfelSet& set, const Cell& cell, std::uint32_t points) {
     std::vector<Cell> parts = cut({{cell.patch, cell.item, cell.scale}}, points,
                                   [&](const Cell& part) { return tree_[part.patch].area; }, {});
@@ -278,28 +279,34 @@ void SurfelPlacement::append(SurfelSet& set, const Cell& cell, std::uint32_t poi
     const Patch& patch = tree_[cell.patch];
     const auto index = static_cast<std::uint32_t>(set.surfels.size());
     const std::size_t first = set.points.size();
+    double area = 0.0;
     for (const Cell& part : parts) {
         const Patch& of_part = tree_[part.patch];
         const gpu::TraceTriangle& triangle = scene_.triangles[of_part.point.triangle];
+        if (is_hole(*scene_.materials[triangle.material], triangle, of_part.point.weights)) continue;
         const auto second = scene_.second_emission.find(of_part.point.triangle);
         set.points.push_back(cell_point(triangle,
                                         second == scene_.second_emission.end() ? nullptr : &second->second,
                                         of_part.point, of_part.area * cell.scale, index));
         set.point_places.push_back(of_part.point);
+        area += of_part.area * cell.scale;
     }
-    const auto middle = std::ranges::min_element(
-        set.points.begin() + std::ssize(set.points) - std::ssize(parts), set.points.end(), {},
-        [&](const gpu::CellPoint& point) { return glm::distance(point.position, patch.centre); });
-    const auto area = static_cast<float>(patch.area * cell.scale);
+    const std::span points_of_cell = std::span(set.points).subspan(first);
+    if (points_of_cell.empty()) return;
+    const auto middle = std::ranges::min_element(points_of_cell, {}, [&](const gpu::CellPoint& point) {
+        return glm::distance(point.position, patch.centre);
+    });
+    const auto whole = static_cast<float>(patch.area * cell.scale);  // m²
     set.surfels.push_back({.position = middle->position,
                            .first_point = static_cast<std::uint32_t>(first),
                            .normal = middle->normal,
-                           .point_count = static_cast<std::uint32_t>(parts.size()),
-                           .area = area,
+                           .point_count = static_cast<std::uint32_t>(points_of_cell.size()),
+                           .area = static_cast<float>(area),
                            // The variance of a square's positions is a sixth of its area.
-                           .width2 = std::max(area, 6.0F * patch.spread2),
+                           .width2 = std::max(whole, 6.0F * patch.spread2),
                            .own = static_cast<float>(1.0 / cell.scale)});
-    set.surfel_places.push_back(set.point_places[static_cast<std::size_t>(middle - set.points.begin())]);
+    set.surfel_places.push_back(
+        set.point_places[first + static_cast<std::size_t>(middle - points_of_cell.begin())]);
     set.item_of.push_back(cell.item);
     set.patches.push_back(patch.id);
     set.branches.push_back(cell.branch);

@@ -9,6 +9,7 @@
 #include <span>
 #include <vector>
 
+#include "engine/shared_array.hpp"
 #include "renderer/gpu/gpu_types.hpp"
 #include "renderer/passes/surfels/patch_cut.hpp"
 #include "renderer/passes/surfels/patch_tree.hpp"
@@ -43,9 +44,8 @@ struct SecondEmission {
 /// The triangles of a scene, on which surfels are placed.
 struct SceneTriangles {
     std::vector<gpu::TraceTriangle> triangles;
-    std::vector<std::uint32_t> item_of;  ///< by triangle: index into SceneGeometry::items
-    std::vector<bool> double_sided;      ///< by material index
-    std::vector<bool> emits;             ///< by material index
+    std::vector<std::uint32_t> item_of;                      ///< by triangle: index into SceneGeometry::items
+    SharedArray<std::shared_ptr<const Material>> materials;  ///< null where no triangle has the index
     std::map<std::uint32_t, SecondEmission> second_emission{};  ///< by triangle, of those that have it
 };
 
@@ -96,9 +96,10 @@ struct LastCut {
 /// where the material is double-sided. The surfaces of an item are the root of a tree of patches. A cell is a
 /// patch: the trees are cut where the sum of shares (GuidePoint) and of area times density (density_at) is
 /// greatest, weighted by how much surfaces bend (Patch::bend), until there are as many cells as are wanted.
-/// The parts of the cell are its sample points, and the point nearest to its centre is its surfel. If there
-/// are more than 16 items, and more than a quarter as many as surfels wanted, some, chosen at random, also
-/// stand for others.
+/// Each part of the cell has a sample point, unless that is in a hole of a mask: the area of the cell is that
+/// of the parts whose points are on the surface. The point nearest to the cell's centre is its surfel. If
+/// there are more than 16 items, and more than a quarter as many as surfels wanted, some, chosen at random,
+/// also stand for others.
 ///
 /// A patch has the same cell wherever the focus is. The set depends on the arguments of the constructor and
 /// of `place` only: the trees are kept between calls just to save time.

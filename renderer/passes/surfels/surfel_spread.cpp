@@ -30,7 +30,7 @@ bool has_second_emission(const Material& material) {
 /// The triangles of the meshes, also where they are deformed: where surfels are must not depend on which
 /// deformation came first.
 SceneTriangles triangles_of(const SceneLayout& layout, const PlacementKey& key) {
-    SceneTriangles scene;
+    SceneTriangles scene{.triangles = {}, .item_of = {}, .materials = layout.materials};
     layout.visit_solids([&](std::uint32_t number) {
         const SceneLayout::Drawable& drawable = layout.drawables[number];
         const std::vector<Vertex>& vertices = drawable.primitive().vertices;
@@ -45,11 +45,6 @@ SceneTriangles triangles_of(const SceneLayout& layout, const PlacementKey& key) 
         }
         scene.item_of.insert(scene.item_of.end(), count, drawable.item);
     });
-    for (std::size_t i = 0; i < layout.materials.size(); ++i) {
-        const auto& material = layout.materials[i];
-        scene.double_sided.push_back(material && material->double_sided);
-        scene.emits.push_back(material && emits(*material));
-    }
     return scene;
 }
 
