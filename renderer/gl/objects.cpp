@@ -175,9 +175,12 @@ void read_buffer(const Functions& gl, GLuint buffer, std::span<std::byte> data, 
 Sampler::Sampler(Device& device, std::string_view label, const SamplerDesc& desc)
     : Object(device, ObjectKind::sampler, create(device.gl().CreateSamplers), label) {
     const std::array parameters = {
-        std::pair{GL_TEXTURE_MIN_FILTER, desc.min_filter}, std::pair{GL_TEXTURE_MAG_FILTER, desc.mag_filter},
-        std::pair{GL_TEXTURE_WRAP_S, desc.wrap_u},         std::pair{GL_TEXTURE_WRAP_T, desc.wrap_v},
+        std::pair{GL_TEXTURE_MIN_FILTER, desc.min_filter},
+        std::pair{GL_TEXTURE_MAG_FILTER, desc.mag_filter},
+        std::pair{GL_TEXTURE_WRAP_S, desc.wrap_u},
+        std::pair{GL_TEXTURE_WRAP_T, desc.wrap_v},
         std::pair{GL_TEXTURE_WRAP_R, GL_CLAMP_TO_EDGE},
+        std::pair{GL_TEXTURE_MAX_LOD, static_cast<GLint>(desc.last_level)},
     };
     for (const auto& [parameter, value] : parameters) {
         gl().SamplerParameteri(name(), static_cast<GLenum>(parameter), value);

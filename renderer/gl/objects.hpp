@@ -112,7 +112,8 @@ struct SamplerDesc {
     GLint mag_filter = GL_LINEAR;
     GLint wrap_u = GL_CLAMP_TO_EDGE;
     GLint wrap_v = GL_CLAMP_TO_EDGE;
-    float anisotropy = 1.0F;  ///< clamped to the driver's limit
+    float anisotropy = 1.0F;           ///< clamped to the driver's limit
+    std::uint32_t last_level = 1000U;  ///< mip levels beyond it are not used
     bool operator==(const SamplerDesc&) const = default;
 };
 

@@ -13,6 +13,7 @@
 #include "engine/scene/decoded.hpp"
 #include "renderer/gpu/growing_buffer.hpp"
 #include "renderer/gpu/mirror_shares.hpp"
+#include "renderer/passes/scene/mask_levels.hpp"
 #include "renderer/passes/scene/normal_levels.hpp"
 
 namespace candela {
@@ -34,33 +35,66 @@ GLint wrap_mode(Wrap wrap) {
     return GL_REPEAT;
 }
 
+gl::SamplerDesc sampler_of(const Image& image) {
+    return {.min_filter = GL_LINEAR_MIPMAP_LINEAR,
+            .wrap_u = wrap_mode(image.wrap_u),
+            .wrap_v = wrap_mode(image.wrap_v),
+            .anisotropy = 8.0F};
+}
+
 /// The image on the GPU, without what its mip levels contain.
-std::shared_ptr<MaterialTexture> make_texture(Gpu& gpu, const Image& image) {
+MaterialTexture make_texture(Gpu& gpu, const Image& image) {
     const TextureDesc desc{
         .size = {image.width, image.height},
         .format = image.encoding == Encoding::srgb ? Format::srgb8_alpha8 : Format::rgba8,
         .mips = static_cast<std::uint32_t>(std::bit_width(std::max(image.width, image.height)))};
     gl::Texture texture(gpu.device(), "material", desc);
-    gl::Sampler sampler(gpu.device(), "material",
-                        {.min_filter = GL_LINEAR_MIPMAP_LINEAR,
-                         .wrap_u = wrap_mode(image.wrap_u),
-                         .wrap_v = wrap_mode(image.wrap_v),
-                         .anisotropy = 8.0F});
-    return std::make_shared<MaterialTexture>(MaterialTexture{std::move(texture), std::move(sampler)});
+    gl::Sampler sampler(gpu.device(), "material", sampler_of(image));
+    return {std::move(texture), std::move(sampler)};
 }
 
-std::shared_ptr<const MaterialTexture> upload_texture(Gpu& gpu, const Image& image) {
-    const std::shared_ptr<MaterialTexture> made = make_texture(gpu, image);
-    made->texture.upload(std::as_bytes(std::span(image.texels)));
-    made->texture.generate_mips();
+std::vector<glm::u8vec4> read_level(const gl::Texture& texture, std::uint32_t level) {
+    const std::vector<std::byte> read = texture.read(level);
+    std::vector<glm::u8vec4> texels(read.size() / sizeof(glm::u8vec4));
+    std::memcpy(texels.data(), read.data(), read.size());
+    return texels;
+}
+
+/// Makes mip levels cover as much as the image, up to the last one that can.
+void keep_coverage(Gpu& gpu, MaterialTexture& made, const Image& image, float cutoff) {
+    const float share = coverage(image, cutoff);
+    if (share == 0.0F || share == 1.0F) return;
+    std::uint32_t level = 1;
+    for (; level < made.texture.desc().mips; ++level) {
+        const glm::uvec2 size = made.texture.level_size(level);
+        const auto kept = with_coverage({.width = size.x,
+                                         .height = size.y,
+                                         .texels = read_level(made.texture, level),
+                                         .wrap_u = image.wrap_u,
+                                         .wrap_v = image.wrap_v},
+                                        cutoff, share);
+        if (!kept) break;
+        made.texture.upload(std::as_bytes(std::span(kept->texels)), level);
+    }
+    // More anisotropic samples would have the mean of holes and of what is between them.
+    gl::SamplerDesc sampler = sampler_of(image);
+    sampler.anisotropy = 1.0F;
+    sampler.last_level = level - 1;
+    made.sampler = gl::Sampler(gpu.device(), "mask", sampler);
+}
+
+MaterialTexture upload_texture(Gpu& gpu, const Image& image, float cutoff) {
+    MaterialTexture made = make_texture(gpu, image);
+    made.texture.upload(std::as_bytes(std::span(image.texels)));
+    made.texture.generate_mips();
+    if (cutoff > 0.0F) keep_coverage(gpu, made, image, cutoff);
     return made;
 }
 
-std::shared_ptr<const MaterialTexture> upload_normals(Gpu& gpu, const Image& image,
-                                                      const std::vector<NormalLevel>& levels) {
-    const std::shared_ptr<MaterialTexture> made = make_texture(gpu, image);
+MaterialTexture upload_normals(Gpu& gpu, const Image& image, const std::vector<NormalLevel>& levels) {
+    MaterialTexture made = make_texture(gpu, image);
     for (std::uint32_t i = 0; i < levels.size(); ++i) {
-        made->texture.upload(std::as_bytes(std::span(levels[i])), i);
+        made.texture.upload(std::as_bytes(std::span(levels[i])), i);
     }
     return made;
 }
@@ -95,10 +129,7 @@ void set_traced_colours(UploadedImage& uploaded) {
     const Image& image = *uploaded.image;
     const std::uint32_t level = traced_level(image);
     if (level == 0 || !is_opaque(image)) return set_traced(uploaded, 0, image.texels);
-    const std::vector<std::byte> read = uploaded.texture->texture.read(level);
-    std::vector<glm::u8vec4> texels(read.size() / sizeof(glm::u8vec4));
-    std::memcpy(texels.data(), read.data(), read.size());
-    set_traced(uploaded, level, texels);
+    set_traced(uploaded, level, read_level(uploaded.texture->texture, level));
 }
 
 std::uint32_t wrap_bits(const Image* image) {
@@ -139,24 +170,28 @@ glm::vec3 mean_of(const Image& image) {
     return glm::vec3(sum / static_cast<double>(image.texels.size()));
 }
 
-UploadedImage upload_normal_image(Gpu& gpu, const std::shared_ptr<const Image>& image) {
-    const std::vector<NormalLevel> levels = normal_levels(*image);
-    UploadedImage uploaded;
-    uploaded.image = image;
-    uploaded.texture = upload_normals(gpu, *image, levels);
-    const std::uint32_t level = traced_level(*image);
+ImageUse use_of(const Material& material, std::size_t slot) {
+    const float alpha = material.base_colour.a;
+    const bool has_holes = slot == base_colour_slot && is_masked(material) && alpha > 0.0F;
+    return {.image = (material.*material_image_slots[slot].image).get(),
+            .normals = slot == normal_slot,
+            .cutoff = has_holes ? material.alpha_cutoff / alpha : 0.0F};
+}
+
+void upload_normal_image(Gpu& gpu, UploadedImage& uploaded) {
+    const Image& image = *uploaded.image;
+    const std::vector<NormalLevel> levels = normal_levels(image);
+    uploaded.texture = std::make_shared<const MaterialTexture>(upload_normals(gpu, image, levels));
+    const std::uint32_t level = traced_level(image);
     set_traced(uploaded, level, levels[level]);
-    return uploaded;
 }
 
 /// Only colours are for tracing.
-UploadedImage upload_image(Gpu& gpu, const std::shared_ptr<const Image>& image) {
-    UploadedImage uploaded;
-    uploaded.image = image;
-    uploaded.texture = upload_texture(gpu, *image);
-    uploaded.mean = mean_of(*image);
-    if (image->encoding == Encoding::srgb) set_traced_colours(uploaded);
-    return uploaded;
+void upload_colour_image(Gpu& gpu, UploadedImage& uploaded, float cutoff) {
+    const Image& image = *uploaded.image;
+    uploaded.texture = std::make_shared<const MaterialTexture>(upload_texture(gpu, image, cutoff));
+    uploaded.mean = mean_of(image);
+    if (image.encoding == Encoding::srgb) set_traced_colours(uploaded);
 }
 
 /// The reflectance of what is not metal in the mirror direction, where it faces the viewer and (alpha) at
@@ -198,41 +233,46 @@ std::uint32_t MaterialTable::take(const std::shared_ptr<const Material>& materia
     return materials_.take(material.get(), [&] {
         Listed listed{.material = material};
         for (std::size_t slot = 0; slot < material_image_slots.size(); ++slot) {
-            listed.images[slot] = number_of((*material).*material_image_slots[slot].image, slot);
+            listed.images[slot] = number_of(*material, slot);
         }
         return listed;
     });
 }
 
-/// The number of the image in a slot of a material. Normals have mip levels of their own, also of an image
-/// that is used for something else, too.
-std::uint32_t MaterialTable::number_of(const std::shared_ptr<const Image>& image, std::size_t slot) {
-    if (!image) return 0;
-    if (slot == normal_slot) {
-        return normals_.take(image.get(), [&] { return upload_normal_image(*gpu_, image); }) + 1;
-    }
-    return images_.take(image.get(), [&] { return upload_image(*gpu_, image); }) + 1;
+/// The number of the image in a slot of a material. Normals and masks have mip levels of their own, also of
+/// an image that is used for something else, too.
+std::uint32_t MaterialTable::number_of(const Material& material, std::size_t slot) {
+    const ImageUse use = use_of(material, slot);
+    if (use.image == nullptr) return 0;
+    const auto upload_image = [&] {
+        UploadedImage uploaded;
+        uploaded.image = material.*material_image_slots[slot].image;
+        if (use.normals) {
+            upload_normal_image(*gpu_, uploaded);
+        } else {
+            upload_colour_image(*gpu_, uploaded, use.cutoff);
+        }
+        return uploaded;
+    };
+    return images_.take(use, upload_image) + 1;
 }
 
 void MaterialTable::drop_unused() {
     materials_.drop_unused([&](std::uint32_t index) {
         const Material& material = *materials_[index].material;
         for (std::size_t slot = 0; slot < material_image_slots.size(); ++slot) {
-            const auto& image = material.*material_image_slots[slot].image;
-            if (image) (slot == normal_slot ? normals_ : images_).release(image.get());
+            const ImageUse use = use_of(material, slot);
+            if (use.image != nullptr) images_.release(use);
         }
         dropped_.push_back(index);
     });
-    for (UseCache<Image, UploadedImage>* const images : {&images_, &normals_}) {
-        images->drop_unused([&](std::uint32_t number) { texel_places_.take_back((*images)[number].range); });
-    }
+    images_.drop_unused([&](std::uint32_t number) { texel_places_.take_back(images_[number].range); });
 }
 
 const UploadedImage& MaterialTable::image_of(const Listed& listed, std::size_t slot) const {
     static const UploadedImage none{};
     const std::uint32_t number = listed.images[slot];
-    if (number == 0) return none;
-    return slot == normal_slot ? normals_[number - 1] : images_[number - 1];
+    return number == 0 ? none : images_[number - 1];
 }
 
 glm::vec3 MaterialTable::mean_albedo(std::uint32_t material) const {
@@ -326,11 +366,9 @@ bool MaterialTable::upload_texels(Execution& run, BufferHandle<std::uint32_t> te
         return all;
     };
     for (const std::uint32_t number : images_.take_added()) add(images_[number]);
-    for (const std::uint32_t number : normals_.take_added()) add(normals_[number]);
     const bool moved = place_ranges(run, texels, texel_places_, ranges(), [&] {
         images.clear();
         images_.visit(add);
-        normals_.visit(add);
         return ranges();
     });
     upload_ranges(*gpu_, run, texels, ranges(), [&](std::size_t i, BufferWriter<std::uint32_t>& writer) {

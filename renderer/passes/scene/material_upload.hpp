@@ -1,6 +1,7 @@
 #pragma once
 
 #include <array>
+#include <compare>
 #include <cstddef>
 #include <cstdint>
 #include <memory>
@@ -13,9 +14,16 @@
 
 namespace candela {
 
-/// By slot: one more than the number of a material's image in a MaterialTable, normals counted for
-/// themselves; 0: no image.
+/// By slot: one more than the number of a material's image in a MaterialTable; 0: no image.
 using MaterialImages = std::array<std::uint32_t, material_image_slots.size()>;
+
+/// An image, and what its mip levels depend on.
+struct ImageUse {
+    const Image* image = nullptr;
+    bool normals = false;  ///< it has the levels of normal_levels
+    float cutoff = 0.0F;   ///< of a mask, for the image's own alpha; 0: none
+    auto operator<=>(const ImageUse&) const = default;
+};
 
 /// An image on the GPU: as a texture for rasterisation, and in the buffer of texels for tracing, where large
 /// ones are reduced to a mip level.
@@ -58,17 +66,16 @@ class MaterialTable {
         std::shared_ptr<const Material> material;  // null: the index is free
         MaterialImages images{};
     };
-    [[nodiscard]] std::uint32_t number_of(const std::shared_ptr<const Image>& image, std::size_t slot);
+    [[nodiscard]] std::uint32_t number_of(const Material& material, std::size_t slot);
     [[nodiscard]] const UploadedImage& image_of(const Listed& listed, std::size_t slot) const;
     [[nodiscard]] gpu::Material record_of(const Listed& listed) const;
     [[nodiscard]] glm::vec3 mean_of_image(const Listed& listed, std::size_t slot) const;
     [[nodiscard]] bool upload_texels(Execution& run, BufferHandle<std::uint32_t> texels);
 
     Gpu* gpu_;
-    UseCache<Material, Listed> materials_;
-    UseCache<Image, UploadedImage> images_;
-    UseCache<Image, UploadedImage> normals_;  // of normal_slot
-    std::vector<std::uint32_t> dropped_;      // indices of materials since the last upload
+    UseCache<const Material*, Listed> materials_;
+    UseCache<ImageUse, UploadedImage> images_;
+    std::vector<std::uint32_t> dropped_;  // indices of materials since the last upload
     RangePlaces texel_places_;
 };
 

@@ -59,7 +59,7 @@ class MeshTable {
         BufferRange range;
     };
 
-    UseCache<Mesh, Uploaded> meshes_;
+    UseCache<const Mesh*, Uploaded> meshes_;
     std::map<std::uint32_t, Deformed> deformed_;  // by drawable
     RangePlaces vertex_places_;
     RangePlaces index_places_;

@@ -2,26 +2,27 @@
 
 #include <cstdint>
 #include <deque>
-#include <unordered_map>
+#include <map>
 #include <utility>
 #include <vector>
 
 namespace candela {
 
-/// What was made for objects, found by their addresses, and kept while it is in use. A thing must keep its
-/// object alive, so that the address stays that of the object.
-template <class Object, class Thing>
+/// What was made for objects, found by keys with their addresses, and kept while it is in use. A thing must
+/// keep its object alive, so that the address stays that of the object. No key in use is that made by
+/// default.
+template <class Key, class Thing>
 class UseCache {
  public:
-    /// Returns the number of the object's thing, which stays the same while it is in use, and counts one more
+    /// Returns the number of the key's thing, which stays the same while it is in use, and counts one more
     /// use. The thing is made by `make()` if there is none.
     template <class Make>
-    std::uint32_t take(const Object* object, Make make) {
-        auto found = numbers_.find(object);
+    std::uint32_t take(const Key& key, Make make) {
+        auto found = numbers_.find(key);
         if (found == numbers_.end()) {
             Thing thing = make();
-            found = numbers_.emplace(object, new_number()).first;
-            entries_[found->second] = {object, std::move(thing), 0};
+            found = numbers_.emplace(key, new_number()).first;
+            entries_[found->second] = {key, std::move(thing), 0};
             added_.push_back(found->second);
         }
         ++entries_[found->second].uses;
@@ -29,8 +30,8 @@ class UseCache {
     }
 
     /// Ends one use. A thing without uses is still there until drop_unused.
-    void release(const Object* object) {
-        const std::uint32_t number = numbers_.at(object);
+    void release(const Key& key) {
+        const std::uint32_t number = numbers_.at(key);
         if (--entries_[number].uses == 0) unused_.push_back(number);
     }
 
@@ -39,9 +40,9 @@ class UseCache {
     void drop_unused(Drop drop) {
         for (const std::uint32_t number : std::exchange(unused_, {})) {
             Entry& entry = entries_[number];
-            if (entry.uses > 0 || entry.object == nullptr) continue;
+            if (entry.uses > 0 || entry.key == Key{}) continue;
             drop(number);
-            numbers_.erase(entry.object);
+            numbers_.erase(entry.key);
             entry = {};
             free_.push_back(number);
         }
@@ -50,7 +51,7 @@ class UseCache {
     /// The numbers of the things that are new since the last call and still there.
     [[nodiscard]] std::vector<std::uint32_t> take_added() {
         std::vector<std::uint32_t> added = std::exchange(added_, {});
-        std::erase_if(added, [this](std::uint32_t number) { return entries_[number].object == nullptr; });
+        std::erase_if(added, [this](std::uint32_t number) { return entries_[number].key == Key{}; });
         return added;
     }
 
@@ -63,13 +64,13 @@ class UseCache {
     template <class Visit>
     void visit(Visit visit) {
         for (Entry& entry : entries_) {
-            if (entry.object != nullptr) visit(entry.thing);
+            if (entry.key != Key{}) visit(entry.thing);
         }
     }
 
  private:
     struct Entry {
-        const Object* object = nullptr;  // null: the number is free
+        Key key{};  // made by default: the number is free
         Thing thing{};
         std::uint32_t uses = 0;
     };
@@ -84,7 +85,7 @@ class UseCache {
         return number;
     }
 
-    std::unordered_map<const Object*, std::uint32_t> numbers_;
+    std::map<Key, std::uint32_t> numbers_;
     std::deque<Entry> entries_;  // by number; things stay where they are
     std::vector<std::uint32_t> free_;
     std::vector<std::uint32_t> added_;
