@@ -227,7 +227,7 @@ bool plane_under_square(const std::shared_ptr<const Material>& material, float l
         flipped(expected_picture(scene, size, glm::dvec3(0.0), {0, 1, 0}, [&](glm::dvec3 at) {
             return glm::dvec3(0.5 / pi * irradiance_of_polygon(corners, at, {0, 1, 0}));
         }));
-    const Estimate estimate = trace_inside(scene, size, 128, 0, Defect::none);
+    const Estimate estimate = trace_inside(scene, size, 512, 0, Defect::none);
     const NoisyMean mean = mean_ratio(estimate.direct, expected);
     return mean.error < 1e-3 && is_within(mean, 1.0, float_tolerance);
 }
