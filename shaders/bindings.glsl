@@ -153,7 +153,6 @@
 #define BOUNCE_GROUP 32     // the same of surfel_bounce.comp, of a slice: ROWS_A_BOUNCE surfels each
 #define BOUNCE_SLICES 16    // invocations of surfel_bounce.comp that share the columns of a surfel, where a device has many
 #define BOUNCES_GROUP 512   // the same of surfel_bounces.comp
-#define BOUNCES_AN_ACCOUNT 4  // bounces that are gathered until the flux is accounted for again
 // Rays that an invocation of surfel_light.comp casts to sources of one kind in a dispatch, at most. Each ray loops over
 // nodes of the BVH, and software drivers stop all loops of an invocation after 65,535 iterations in total.
 #define MOST_POINT_RAYS 64

@@ -6,8 +6,10 @@
 #include <cstdint>
 #include <glm/common.hpp>
 #include <glm/exponential.hpp>
+#include <glm/vector_relational.hpp>
 #include <numeric>
 #include <optional>
+#include <span>
 #include <variant>
 #include <vector>
 
@@ -76,9 +78,21 @@ void warn_of_few_vpls(Log& log, const VplReport& vpls) {
     }
 }
 
+/// Where next to nothing is absorbed, the light of a closed room is what rounding and bounds make of it.
+void warn_of_white_rooms(Log& log, std::span<const gpu::LitSurfel> lit, const EnergyAccount& flux) {
+    constexpr double most = 1100.0;  // an albedo of 0.999 has 1,000
+    glm::dvec3 reflected(0.0);
+    for (const gpu::LitSurfel& surfel : lit) reflected += glm::dvec3(surfel.flux);
+    if (glm::any(glm::greaterThan(reflected, most * flux.emitted))) {
+        log.warn(
+            "the surfaces reflect the light more than 1,100 times, as in a closed room that absorbs "
+            "next to nothing: an albedo above 0.9992 counts as 0.9992");
+    }
+}
+
 }  // namespace
 
-VplReport Renderer::State::report_vpls(const Vpls& vpls, const ViewHandles& view) const {
+VplReport Renderer::State::report_vpls(const Vpls& vpls, const ViewHandles& view) {
     const auto read = [&]<class T>(BufferHandle<T> buffer, std::size_t count) {
         return backend_.buffer(runtime_.object(buffer)).template download<T>(count);
     };
@@ -98,7 +112,9 @@ VplReport Renderer::State::report_vpls(const Vpls& vpls, const ViewHandles& view
         return report;
     }
     const auto& lit = std::get<LitSurfels>(vpls.records);
-    report.alive = count_alive(read(lit.surfels, counts.surfels));
+    const std::vector<gpu::LitSurfel> surfels = read(lit.surfels, counts.surfels);
+    warn_of_white_rooms(gpu_.log(), surfels, report.flux);
+    report.alive = count_alive(surfels);
     if (lit.emitters) report.alive += count_alive(read(*lit.emitters, counts.emitters));
     return report;
 }

@@ -99,7 +99,7 @@ class CANDELA_PRIVATE Renderer::State {
     [[nodiscard]] FrameOutcome outcome() const;
     void match_times(const std::vector<FrameTime>& times);
     [[nodiscard]] bool refines() const;
-    [[nodiscard]] VplReport report_vpls(const Vpls& vpls, const ViewHandles& view) const;
+    [[nodiscard]] VplReport report_vpls(const Vpls& vpls, const ViewHandles& view);
     [[nodiscard]] std::uint32_t count_filled(const ViewHandles& view) const;
     [[nodiscard]] std::optional<double> estimate_error(const ViewHandles& view) const;
     [[nodiscard]] LightReport report_lights(const ViewHandles& view) const;

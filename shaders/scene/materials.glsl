@@ -55,8 +55,13 @@ vec4 colour_at(Material material, vec2 uv) {
     return material.base_colour * bilinear_texel(image, uv);
 }
 
+// Largest albedo where light is traced. A closed room of it multiplies its light by 1,250; with 1, it would grow without end.
+const float MOST_ALBEDO = 0.9992;
+
 // Albedo of the Lambertian surface that stands for a material of this base colour.
-vec3 traced_albedo(Material material, vec3 colour) { return material.traced_share * colour + material.traced_mirror; }
+vec3 traced_albedo(Material material, vec3 colour) {
+    return min(material.traced_share * colour + material.traced_mirror, MOST_ALBEDO);
+}
 
 // Radiance that a surface emits.
 vec3 emission_at(Material material, vec2 uv) {

@@ -4,9 +4,8 @@
 layout(local_size_x = SURFEL_GROUP) in;
 
 uniform uint bounce;  // number of the last one that was gathered; 1: none yet
-uniform bool foresees;  // adds the bounces to come
 
 void main() {
-    if (foresees) add_bounces_to_come(bounce);
+    if (bounce > 2u) take_step();
     account_for(bounce);
 }

@@ -1,6 +1,6 @@
 // One bounce: surfels gather the light that others reflect. In the first dispatch (FIRST) that is the reflected flux of
-// the lights, placed where it falls within each cell; later it is what the others gathered in the previous bounce. Adds
-// to CellLight::indirect. One invocation per ROWS_A_BOUNCE surfels, or if SLICED, BOUNCE_SLICES per surfel.
+// the lights, placed where it falls within each cell; later it is what the others have gathered and not sent on yet. One
+// invocation per ROWS_A_BOUNCE surfels, or if SLICED, BOUNCE_SLICES per surfel.
 #include "surfels/surfel_bounced.glsl"
 
 #ifdef SLICED
@@ -13,8 +13,6 @@ layout(std430, binding = BINDING_SURFELS) readonly restrict buffer Surfels { Sur
 layout(std430, binding = BINDING_DIRECT_POINTS) readonly restrict buffer DirectPoints { DirectPoint direct_points[]; };
 layout(std430, binding = BINDING_CELL_POINTS) readonly restrict buffer Points { CellPoint cell_points[]; };
 layout(std430, binding = BINDING_FORM_FACTORS) readonly restrict buffer FormFactors { uint form_factors[]; };
-
-uniform uint bounce;  // 2 or more
 
 // The rows of an invocation. They have the same columns, so that what a column sends is read once for all of them.
 struct RowsHere {
@@ -56,7 +54,7 @@ void add_column(inout RowsHere here, uint other, float factors[ROWS_A_BOUNCE]) {
 #else
 
 void add_column(inout RowsHere here, uint other, float factors[ROWS_A_BOUNCE]) {
-    vec4 sent = bounced[at_previous(bounce, other)];
+    vec4 sent = bounced[at_left(other)];
     for (uint k = 0u; k < ROWS_A_BOUNCE; ++k) here.sum[k] += factors[k] * sent.a * sent.rgb;
 }
 
@@ -99,6 +97,21 @@ void add_slices(inout RowsHere here) {}
 
 #endif
 
+#ifdef FIRST
+
+void keep_gathered(uint id, vec3 irradiance) {
+    cells[id].indirect = irradiance;
+    bounced[at_left(id)] = vec4(cells[id].albedo * irradiance, rows[id].x);
+    bounced[at_step(id)] = vec4(0.0);
+    bounced[at_step_gathered(id)] = vec4(0.0);
+}
+
+#else
+
+void keep_gathered(uint id, vec3 irradiance) { bounced[at_gathered(id)] = vec4(irradiance, 0.0); }
+
+#endif
+
 void main() {
     uint first = gl_GlobalInvocationID.x;
     uint apart = bounce_rows_apart();
@@ -115,6 +128,6 @@ void main() {
     for (uint k = 0u; k < ROWS_A_BOUNCE; ++k) {
         uint id = first + k * apart;
         if (id >= surfel_count) return;
-        add_bounce(bounce, id, here.sum[k]);
+        keep_gathered(id, rows[id].x * here.sum[k]);
     }
 }

@@ -9,19 +9,11 @@
 // Scale, and 1 - covered share.
 layout(std430, binding = BINDING_SURFEL_ROWS) readonly restrict buffer Rows { vec2 rows[]; };
 layout(std430, binding = BINDING_CELL_LIGHT) OF_THE_GROUP restrict buffer Cells { CellLight cells[]; };
-// Two parts in turn, for the last bounce and the one before: rgb is radiosity, a the surfel's scale. A third one for the
-// irradiance of the last bounce.
+// Four parts of a value a surfel: the radiosity that no surfel has gathered yet, with the surfel's scale in a; the irradiance
+// of the last bounce; the radiosity of the last step, and the irradiance that others have gathered from it.
 layout(std430, binding = BINDING_BOUNCE) OF_THE_GROUP restrict buffer Bounce { vec4 bounced[]; };
 
-// Where the light of this bounce is, and that of the one before.
-uint at_last(uint bounce, uint id) { return (bounce + 1u) % 2u * surfel_count + id; }
-uint at_previous(uint bounce, uint id) { return bounce % 2u * surfel_count + id; }
-
-// `sum`: what the surfel gathers in this bounce, without its own scale.
-void add_bounce(uint bounce, uint id, vec3 sum) {
-    float scale = rows[id].x;
-    vec3 irradiance = scale * sum;
-    bounced[at_last(bounce, id)] = vec4(cells[id].albedo * irradiance, scale);
-    bounced[2u * surfel_count + id] = vec4(irradiance, 0.0);
-    cells[id].indirect += irradiance;
-}
+uint at_left(uint id) { return id; }
+uint at_gathered(uint id) { return surfel_count + id; }
+uint at_step(uint id) { return 2u * surfel_count + id; }
+uint at_step_gathered(uint id) { return 3u * surfel_count + id; }

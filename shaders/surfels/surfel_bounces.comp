@@ -1,4 +1,4 @@
-// All bounces after the first ones, in one dispatch, for devices on which a chain of small dispatches takes long. One work
+// All bounces after the first one, in one dispatch, for devices on which a chain of small dispatches takes long. One work
 // group for each of column_stride classes of surfels: those whose indices are the same modulo column_stride gather from
 // each other only. An invocation gathers for every BOUNCES_GROUP-th surfel of the class.
 #define OF_THE_GROUP coherent
@@ -8,32 +8,31 @@ layout(local_size_x = BOUNCES_GROUP) in;
 
 layout(std430, binding = BINDING_FORM_FACTORS) readonly restrict buffer FormFactors { uint form_factors[]; };
 
-uniform uint bounces_before;  // number of the last one that was gathered before; 1: none
+uniform uint bounces_before;  // number of the last one that was gathered before: 1, none, or 2
 uniform uint last_bounce;
-uniform bool foresees;  // adds the bounces to come
 
 const uint ROWS = MOST_COLUMNS / BOUNCES_GROUP;  // of an invocation
 
 shared vec3 sent[BOUNCES_GROUP];  // radiosities of some columns, times the surfels' scales
 
 // `first`: the first of those columns.
-void share_sent(uint bounce, uint first) {
+void share_sent(uint first) {
     uint other = surfel_of(gl_WorkGroupID.x, first + gl_LocalInvocationIndex);
-    vec4 last = other < surfel_count ? bounced[at_previous(bounce, other)] : vec4(0.0);
+    vec4 left = other < surfel_count ? bounced[at_left(other)] : vec4(0.0);
     memoryBarrierShared();
     barrier();  // until the columns before have been read
-    sent[gl_LocalInvocationIndex] = last.a * last.rgb;
+    sent[gl_LocalInvocationIndex] = left.a * left.rgb;
     memoryBarrierShared();
     barrier();
 }
 
 uint row_of(uint k) { return cell_of(gl_LocalInvocationIndex + k * BOUNCES_GROUP); }
 
-void gather(uint bounce) {
+void gather() {
     vec3 sums[ROWS];
     for (uint k = 0u; k < ROWS; ++k) sums[k] = vec3(0.0);
     for (uint first = 0u; first < columns; first += BOUNCES_GROUP) {
-        share_sent(bounce, first);
+        share_sent(first);
         uint pairs = min(columns - first, BOUNCES_GROUP) / 2u;
         for (uint i = 0u; i < pairs; ++i) {
             for (uint k = 0u; k < ROWS; ++k) {
@@ -44,7 +43,7 @@ void gather(uint bounce) {
         }
     }
     for (uint k = 0u; k < ROWS && row_of(k) < surfel_count; ++k) {
-        add_bounce(bounce, row_of(k), sums[k]);
+        bounced[at_gathered(row_of(k))] = vec4(rows[row_of(k)].x * sums[k], 0.0);
     }
 }
 
@@ -56,17 +55,12 @@ void share_buffers() {
 }
 
 void main() {
-    uint bounce = bounces_before;
-    while (true) {
-        if (foresees) add_bounces_to_come(bounce);
+    account_for(bounces_before);
+    for (uint bounce = bounces_before + 1u; goes_on && bounce <= last_bounce; ++bounce) {
+        gather();
+        share_buffers();
+        take_step();
         share_buffers();
         account_for(bounce);
-        if (!goes_on || bounce == last_bounce) break;
-        uint next_account = min(bounce + BOUNCES_AN_ACCOUNT, last_bounce);
-        while (bounce < next_account) {
-            ++bounce;
-            gather(bounce);
-            share_buffers();
-        }
     }
 }

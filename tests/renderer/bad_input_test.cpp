@@ -475,6 +475,28 @@ TEST_CASE_FIXTURE(BadInput, "more depth maps of VPLs than the driver has room fo
     CHECK(renderer.renderer().configuration() == before);
 }
 
+TEST_CASE_FIXTURE(BadInput, "what absorbs next to nothing of its light in a closed room is named") {
+    Watched renderer(device, context->get_proc(), false);
+    Configuration configuration = small_configuration();
+    configuration.vpls.count = 64;
+    REQUIRE(renderer.renderer().configure(configuration).empty());
+    const auto lines_of = [&](float albedo) {
+        renderer.lines.clear();
+        const Scene scene = furnace_box(albedo);
+        CHECK(is_sane(renderer.render(scene.world, scene.camera)));
+        static_cast<void>(renderer.renderer().report());
+        return renderer.lines;
+    };
+    CHECK(lines_of(0.9F).empty());
+    CHECK(lines_of(0.999F).empty());
+    const std::vector<std::string> of_white = lines_of(1.0F);
+    REQUIRE(of_white.size() == 1);
+    CHECK(of_white[0].find("absorbs next to nothing") != std::string::npos);
+    const std::vector<std::string> of_more = lines_of(1.5F);
+    REQUIRE(of_more.size() == 1);  // the other is known already
+    CHECK(of_more[0].find("base colour is above 1") != std::string::npos);
+}
+
 TEST_CASE_FIXTURE(BadInput, "an entity without a name is called by its index") {
     Scene scene = cornell_box();
     const Entity culprit = add(scene.world, MeshInstance{});

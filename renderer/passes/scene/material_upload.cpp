@@ -10,6 +10,8 @@
 #include <numeric>
 #include <span>
 
+#include <fmt/format.h>
+
 #include "engine/scene/decoded.hpp"
 #include "renderer/gpu/growing_buffer.hpp"
 #include "renderer/gpu/mirror_shares.hpp"
@@ -227,10 +229,19 @@ TracedReflection traced_reflection(const Material& material, float metalness, fl
             (1.0F - metalness) * diffuse + metalness * shares.x};
 }
 
+void warn_of_gain(Log& log, const Material& material) {
+    if (largest_of(glm::vec3(material.base_colour)) > 1.0F) {
+        log.warn(fmt::format("material \"{}\"", material.name),
+                 "its base colour is above 1, as if it reflected more light than it receives; light that is "
+                 "reflected more than once is bounded");
+    }
+}
+
 }  // namespace
 
 std::uint32_t MaterialTable::take(const std::shared_ptr<const Material>& material) {
     return materials_.take(material.get(), [&] {
+        warn_of_gain(gpu_->log(), *material);
         Listed listed{.material = material};
         for (std::size_t slot = 0; slot < material_image_slots.size(); ++slot) {
             listed.images[slot] = number_of(*material, slot);

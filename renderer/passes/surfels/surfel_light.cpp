@@ -72,56 +72,45 @@ SurfelNumbers numbers_of(const Execution& run, const Surfels& surfels) {
 
 struct BouncePrograms {
     const gl::Program& first;
-    const gl::Program& further;
-    bool at_once = false;        // the bounces after the first account are gathered in one dispatch
-    const gl::Program& account;  // if they are, gathers them, too
+    const gl::Program* further = nullptr;  // null: those after the first one are gathered in one dispatch
+    const gl::Program& account;            // which gathers them, too, if they are
     const gl::Program& writer;
 };
 
-/// Gathers up to bounce `bounces`. Every few bounces, the account finds out how much light is left; once it
-/// is little, the remaining dispatches have no work groups: where the CPU does their work, dispatches that
-/// only return would take longer than what is gathered. If all bounces are wanted, each time before that the
-/// light of those to come is added as far as the last two tell.
+/// Gathers up to bounce `bounces`. After each, the account finds out how much light is left; once it is
+/// little, the remaining dispatches have no work groups: where the CPU does their work, dispatches that only
+/// return would take longer than what is gathered.
 void gather_one_by_one(ComputeSteps& steps, const BouncePrograms& programs, std::uint32_t count,
                        std::uint32_t bounces) {
-    const auto uniforms = [&](std::uint32_t bounce) {
-        return count_uniforms(count) + gl::Uniforms{{"bounce", bounce}};
+    const gl::Uniforms of_all = count_uniforms(count);
+    const auto account = [&](std::uint32_t bounce) {
+        return of_all + gl::Uniforms{{"bounce", bounce}, {"solves", bounces == all_bounces}};
     };
-    steps.run(programs.account, {}, uniforms(1) + gl::Uniforms{{"foresees", false}});
+    steps.run(programs.account, {}, account(1));
     for (std::uint32_t bounce = 2; bounce <= bounces; ++bounce) {
-        steps.run_indirect(bounce == 2 ? programs.first : programs.further, uniforms(bounce),
+        steps.run_indirect(bounce == 2 ? programs.first : *programs.further, of_all,
                            offsetof(gpu::FluxAccount, bounce_groups));
-        if (bounce % BOUNCES_AN_ACCOUNT == 0 || bounce == bounces) {
-            steps.run_indirect(programs.account,
-                               uniforms(bounce) + gl::Uniforms{{"foresees", bounces == all_bounces}},
-                               offsetof(gpu::FluxAccount, account_groups));
-        }
+        steps.run_indirect(programs.account, account(bounce), offsetof(gpu::FluxAccount, account_groups));
     }
 }
 
 /// The same in few dispatches, since on a GPU each waits for the one before.
 void gather_at_once(ComputeSteps& steps, const BouncePrograms& programs, std::uint32_t count,
                     std::uint32_t bounces) {
-    const std::uint32_t apart = std::min<std::uint32_t>(std::max(bounces, 1U), BOUNCES_AN_ACCOUNT);
-    for (std::uint32_t bounce = 2; bounce <= apart; ++bounce) {
-        steps.run(bounce == 2 ? programs.first : programs.further, {groups(count, BOUNCE_GROUP)},
-                  count_uniforms(count) + gl::Uniforms{{"bounce", bounce}});
-    }
+    const std::uint32_t apart = bounces > 1 ? 2 : 1;
+    if (apart > 1) steps.run(programs.first, {groups(count, BOUNCE_GROUP)}, count_uniforms(count));
     steps.run(programs.account, {surfel_columns(count).stride},
               count_uniforms(count) + gl::Uniforms{{"bounces_before", apart},
                                                    {"last_bounce", std::max(bounces, apart)},
-                                                   {"foresees", bounces == all_bounces}});
+                                                   {"solves", bounces == all_bounces}});
 }
 
 BouncePrograms bounce_programs(Gpu& gpu, const std::vector<std::string>& writer_variant) {
     const bool at_once = !gpu.device().limits().software;
-    std::vector<std::string> further;
-    if (at_once) further.emplace_back("SLICED");
-    std::vector<std::string> first = further;
-    first.emplace_back("FIRST");
+    std::vector<std::string> first{"FIRST"};
+    if (at_once) first.emplace_back("SLICED");
     return {.first = gpu.program({"surfels/surfel_bounce.comp"}, first),
-            .further = gpu.program({"surfels/surfel_bounce.comp"}, further),
-            .at_once = at_once,
+            .further = at_once ? nullptr : &gpu.program({"surfels/surfel_bounce.comp"}),
             .account = gpu.program({at_once ? "surfels/surfel_bounces.comp" : "surfels/surfel_account.comp"}),
             .writer = gpu.program({"surfels/surfel_write.comp"}, writer_variant)};
 }
@@ -322,13 +311,14 @@ Vpls add_surfel_light(FrameGraph& graph, Gpu& gpu, const Tracing& tracing, const
         pass.run([=, &gpu, &adder, sky = sources.sky](Execution& run) {
             VplCounts counts = run.value(surfels.counts);
             counts.sky_patches = sky ? run.value(sky->count) : 0;
-            counts.accounts = std::min(counts.all_surfels(),
-                                       programs.at_once ? surfel_columns(counts.all_surfels()).stride : 1U);
+            counts.accounts =
+                std::min(counts.all_surfels(),
+                         programs.further == nullptr ? surfel_columns(counts.all_surfels()).stride : 1U);
             counts.directions = lit.balanced && counts.surfels > 0 ? COVER_DIRECTIONS : 0;
             run.set(out.counts, counts);
             const auto [count, points] = numbers_of(run, surfels);
             run.reserve(cells, count);
-            run.reserve(bounced, 3 * count);
+            run.reserve(bounced, 4 * count);
             run.reserve(lit.surfels, count + counts.groups + (lit.balanced ? 1 : 0));
             run.reserve(lit.points, points);
             if (lit.emitters) run.reserve(*lit.emitters, counts.emitters);
@@ -337,7 +327,8 @@ Vpls add_surfel_light(FrameGraph& graph, Gpu& gpu, const Tracing& tracing, const
             ComputeSteps steps(gpu);
             steps.run(adder, {groups(count, SURFEL_GROUP)}, count_uniforms(count));
             gpu.gl().BindBuffer(GL_DISPATCH_INDIRECT_BUFFER, run.object(out.flux));
-            (programs.at_once ? gather_at_once : gather_one_by_one)(steps, programs, count, bounces);
+            (programs.further == nullptr ? gather_at_once : gather_one_by_one)(steps, programs, count,
+                                                                               bounces);
             mean_step.run(steps, counts, shown);
             steps.run(
                 programs.writer, {groups(count, SURFEL_GROUP)},

@@ -33,9 +33,9 @@ struct SurfelSources {
 /// (compute): surfels gather the light that other surfels reflect, bounce by bounce (Jacobi iteration of the
 /// radiosity equation; Goral et al., "Modeling the Interaction of Light Between Diffuse Surfaces", 1984), up
 /// to `bounces` or until a bounce adds less than 0.02 % to the light of each; then they are written as VPLs.
-/// With `all_bounces`, light of the bounces to come is added that the last two foretell (shaders/README.md,
-/// "Bounces to come"). If `sources.balanced`, the light of the VPLs is that above a mean, which is written
-/// behind them ("Shared items"). They depend on surfels, visibility, lights, sky and BVH. Returns LitSurfels.
+/// With `all_bounces`, the equation is solved in fewer steps (shaders/README.md, "Steps of bounces"). If
+/// `sources.balanced`, the light of the VPLs is that above a mean, which is written behind them ("Shared
+/// items"). They depend on surfels, visibility, lights, sky and BVH. Returns LitSurfels.
 [[nodiscard]] Vpls add_surfel_light(FrameGraph& graph, Gpu& gpu, const Tracing& tracing,
                                     const SurfelVisibility& visibility, const SurfelSources& sources,
                                     std::uint32_t bounces, ShownLight shown);
