@@ -3,6 +3,7 @@
 #include <doctest/doctest.h>
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <cstdint>
 #include <memory>
@@ -122,7 +123,7 @@ SurfelSet floor_cell(int n = 8) {
 SurfelSet divided_in(const Surroundings& surroundings, const SurfelSet& set) {
     std::vector<CellDivision> cells;
     for (std::size_t i = 0; i < set.surfels.size(); ++i) {
-        cells.push_back(divide_cell(set, i, surroundings.traced(), ray_offset));
+        cells.push_back(divide_cell(set, i, surroundings.traced(), {}, ray_offset));
     }
     return divided(set, cells);
 }
@@ -218,7 +219,7 @@ TEST_CASE("a cell stays whole in the open, beside a wall, close under a ceiling,
         Surroundings sphere;
         sphere.add(sphere_inwards(1.5F, 4, diffuse(glm::vec3(0.5F))));
         // Facets lie up to 1.5 m · (1 - cos 2°) = 1 mm inside the sphere.
-        const CellDivision division = divide_cell(cap, 0, sphere.traced(), 2e-3F);
+        const CellDivision division = divide_cell(cap, 0, sphere.traced(), {}, 2e-3F);
         CHECK(divided(cap, {&division, 1}).surfels.size() == 1);
     }
 }
@@ -236,6 +237,66 @@ TEST_CASE("a cell is divided where it is bent by more than the cosine 0.7, which
         CHECK(area_of(set) == doctest::Approx(1.0));
         CHECK(set.surfels.back().normal == (degrees < 46.0F ? up : other));
     }
+}
+
+TEST_CASE("a cell that emits light keeps all of its area around a closed body, in four parts") {
+    SurfelSet cube;
+    std::vector<glm::vec3> sides;
+    for (glm::length_t axis = 0; axis < 3; ++axis) {
+        for (const float side : {-1.0F, 1.0F}) sides.emplace_back(0.0F)[axis] = side;
+    }
+    add_cell(cube, sides, sides);
+    cube.emitting_count = 1;
+    const SurfelSet set = divided_in(Surroundings{}, cube);
+    check_consistent(set);
+    CHECK(set.surfels.size() == most_cell_parts);
+    CHECK(area_of(set) == doctest::Approx(1.0));
+}
+
+TEST_CASE("of surfaces that lie on each other only the front one counts, or the first") {
+    const auto floor = square(2.0F, diffuse(glm::vec3(0.5F)));
+    // The area of a cell on the floor at y = 0, and of one on a floor at y = `height`.
+    const auto areas = [&](float height, const std::shared_ptr<const Mesh>& other, bool upside_down = false) {
+        const glm::mat4 moved = glm::translate(glm::mat4(1.0F), {0.0F, height, 0.0F});
+        Surroundings surroundings;
+        surroundings.add(floor);
+        surroundings.add(other, upside_down ? glm::scale(moved, {1.0F, -1.0F, -1.0F}) : moved);
+        const std::vector<std::uint32_t> first = first_triangles(surroundings.traced().layout);
+        std::array<double, 2> found{};
+        for (std::uint32_t item = 0; item < 2; ++item) {
+            SurfelSet cell = floor_cell();
+            const float side = item == 1 && upside_down ? -1.0F : 1.0F;
+            for (gpu::CellPoint& point : cell.points) {
+                if (item == 1) point.position.y = height;
+                point.normal *= side;
+            }
+            for (SurfacePoint& place : cell.point_places) place.triangle = first[item];
+            cell.surfels[0].position = cell.points[0].position;
+            cell.surfels[0].normal = cell.points[0].normal;
+            cell.surfel_places[0] = cell.point_places[0];
+            const CellDivision division = divide_cell(cell, 0, surroundings.traced(), first, ray_offset);
+            const SurfelSet set = divided(cell, {&division, 1});
+            check_consistent(set);
+            found[item] = area_of(set);
+        }
+        return found;
+    };
+    using Areas = std::array<double, 2>;
+    const auto is_about = [](const Areas& a, const Areas& b) {
+        return std::abs(a[0] - b[0]) < 1e-5 && std::abs(a[1] - b[1]) < 1e-5;
+    };
+    CHECK(is_about(areas(0.0F, floor), {1.0, 0.0}));
+    CHECK(is_about(areas(1e-4F, floor), {0.0, 1.0}));
+    CHECK(is_about(areas(-1e-4F, floor), {1.0, 0.0}));
+    CHECK(is_about(areas(2e-3F, floor), {1.0, 1.0}));
+    // Of 8 × 8 points, 4 × 4 are less than a quarter of a metre from the middle, where the other floor is.
+    CHECK(is_about(areas(1e-4F, square(0.25F, diffuse(glm::vec3(0.5F)))), {0.75, 1.0}));
+    // The two sides of a sheet, each a surface of its own.
+    for (const float apart : {0.0F, -1e-4F}) {
+        CHECK(is_about(areas(apart, floor, true), {1.0, 1.0}));
+    }
+    // Of a double-sided one, the front alone is on the floor.
+    CHECK(is_about(areas(0.0F, square(2.0F, diffuse(glm::vec3(0.5F), true))), {1.0, 0.0}));
 }
 
 TEST_CASE("what stands or lies on a cell has the points below it to itself, also if it is low") {

@@ -15,6 +15,11 @@
 namespace candela {
 namespace {
 
+/// Normal of the front, twice as long as the triangle's area.
+glm::vec3 cross_of(const Triangle& triangle) {
+    return glm::cross(triangle.b - triangle.a, triangle.c - triangle.a);
+}
+
 /// One solid drawable of a scene, as rays meet it.
 struct TracedObject {
     const TracedScene& scene;
@@ -40,8 +45,8 @@ TracedObject object_at(const TracedScene& scene, std::uint32_t index) {
             scene.placement.world[drawable.item]};
 }
 
-/// Calls `found(hit, triangle)` for surfaces that the ray meets, roughly from near to far. It returns the
-/// distance beyond which others can be skipped.
+/// Calls `found(hit, triangle, object)` for surfaces that the ray meets, roughly from near to far. It returns
+/// the distance beyond which others can be skipped.
 template <class Found>
 void trace(const TracedScene& scene, const Ray& ray, Found&& found) {
     float limit = ray.t_max;
@@ -51,7 +56,7 @@ void trace(const TracedScene& scene, const Ray& ray, Found&& found) {
         const auto visit = [&](std::uint32_t index) {
             const Triangle triangle = object.triangle(index);
             const auto hit = intersect(triangle, index, ray);
-            if (hit && hit->t < limit && !object.has_hole(*hit)) limit = found(*hit, triangle);
+            if (hit && hit->t < limit && !object.has_hole(*hit)) limit = found(*hit, triangle, leaf.object);
             return limit;
         };
         traverse(scene.hierarchy.objects[leaf.object]->bvh, ray, visit, leaf.node);
@@ -64,21 +69,46 @@ void trace(const TracedScene& scene, const Ray& ray, Found&& found) {
 std::optional<SurfaceHit> nearest_surface(const TracedScene& scene, const Ray& ray) {
     std::optional<float> nearest;
     Triangle hit_triangle{};
-    trace(scene, ray, [&](const Hit& hit, const Triangle& triangle) {
+    trace(scene, ray, [&](const Hit& hit, const Triangle& triangle, std::uint32_t) {
         nearest = hit.t;
         hit_triangle = triangle;
         return hit.t;
     });
     if (!nearest) return std::nullopt;
-    const glm::vec3 cross = glm::cross(hit_triangle.b - hit_triangle.a, hit_triangle.c - hit_triangle.a);
+    const glm::vec3 cross = cross_of(hit_triangle);
     const glm::vec3 normal = glm::normalize(cross);
     return SurfaceHit{*nearest, ray.origin + *nearest * ray.direction,
                       glm::dot(cross, ray.direction) < 0.0F ? normal : -normal};
 }
 
+std::vector<std::uint32_t> first_triangles(const SceneLayout& layout) {
+    std::vector<std::uint32_t> first(layout.drawables.size());
+    std::uint32_t count = 0;
+    layout.visit_solids([&](std::uint32_t number) {
+        first[number] = count;
+        count += static_cast<std::uint32_t>(layout.drawables[number].primitive().indices.size() / 3);
+    });
+    return first;
+}
+
+bool is_covered(const TracedScene& scene, std::span<const std::uint32_t> first, const LayerPoint& point,
+                const LayerLimits& limits) {
+    const Ray down{point.position + limits.reach * point.normal, -point.normal, 0.0F,
+                   limits.reach + limits.tie};
+    bool covered = false;
+    trace(scene, down, [&](const Hit& hit, const Triangle& triangle, std::uint32_t object) {
+        const bool double_sided = scene.layout.drawables[object].primitive().material->double_sided;
+        const bool faces_along = double_sided || glm::dot(cross_of(triangle), point.normal) > 0.0F;
+        const bool is_in_front = limits.reach - hit.t > limits.tie;
+        covered = faces_along && (is_in_front || first[object] + hit.triangle < point.triangle);
+        return covered ? -1.0F : down.t_max;
+    });
+    return covered;
+}
+
 bool is_blocked(const TracedScene& scene, const glm::vec3& from, const glm::vec3& to) {
     bool blocked = false;
-    trace(scene, {from, to - from, 0.0F, 1.0F}, [&](const Hit&, const Triangle&) {
+    trace(scene, {from, to - from, 0.0F, 1.0F}, [&](const Hit&, const Triangle&, std::uint32_t) {
         blocked = true;
         return -1.0F;  // nothing else matters
     });

@@ -1,6 +1,9 @@
 #pragma once
 
+#include <cstdint>
 #include <optional>
+#include <span>
+#include <vector>
 
 #include <glm/vec3.hpp>
 
@@ -25,6 +28,26 @@ struct SurfaceHit {
     glm::vec3 normal;  ///< unit, on the side that the ray comes from
 };
 [[nodiscard]] std::optional<SurfaceHit> nearest_surface(const TracedScene& scene, const Ray& ray);
+
+/// By drawable: the index of its first triangle among those of all solid drawables, in the order of
+/// SceneLayout::visit_solids.
+[[nodiscard]] std::vector<std::uint32_t> first_triangles(const SceneLayout& layout);
+
+/// A point on a side of a triangle.
+struct LayerPoint {
+    glm::vec3 position;
+    glm::vec3 normal;        ///< unit
+    std::uint32_t triangle;  ///< index among those of all solid drawables
+};
+/// When surfaces that lie on each other are one.
+struct LayerLimits {
+    float reach = 0.0F;  ///< metres, most between them
+    float tie = 0.0F;    ///< metres: rounding may decide which is in front of one that is nearer
+};
+/// Whether another surface lies on a point. It faces the same way and is in front of it, or where that is a
+/// tie, its triangle comes first. `first`: first_triangles.
+[[nodiscard]] bool is_covered(const TracedScene& scene, std::span<const std::uint32_t> first,
+                              const LayerPoint& point, const LayerLimits& limits);
 
 /// Whether there is a surface between two points.
 [[nodiscard]] bool is_blocked(const TracedScene& scene, const glm::vec3& from, const glm::vec3& to);

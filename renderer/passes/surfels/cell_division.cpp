@@ -31,6 +31,11 @@ Seat seat_of(const glm::vec3& position, const glm::vec3& normal, float lift, con
     return {position, normal, start + (hit ? 0.5F * hit->distance : lift) * normal};
 }
 
+/// 0.1 mm, in a scene that is large enough, and rounding.
+LayerLimits layer_limits(float ray_offset) {
+    return {.reach = std::clamp(1.1e-4F, ray_offset, 50.0F * ray_offset), .tie = 0.25F * ray_offset};
+}
+
 std::span<const gpu::CellPoint> points_of(const SurfelSet& set, std::size_t surfel) {
     return std::span(set.points).subspan(set.surfels[surfel].first_point, set.surfels[surfel].point_count);
 }
@@ -63,6 +68,27 @@ std::optional<std::uint32_t> middle_of_rest(std::span<const gpu::CellPoint> poin
         middle = static_cast<std::uint32_t>(i);
     }
     return middle;
+}
+
+/// The division with points that are in no part because they face elsewhere than all parts.
+CellDivision joined_by_normal(const SurfelSet& set, std::size_t cell, CellDivision division) {
+    const gpu::Surfel& surfel = set.surfels[cell];
+    const std::span<const gpu::CellPoint> points = points_of(set, cell);
+    const std::vector<std::uint8_t> parts = division.part_of;
+    for (std::size_t i = 0; i < points.size(); ++i) {
+        if (parts[i] != most_cell_parts) continue;
+        float best = -1.0F;
+        for (std::uint8_t part = 0; part < most_cell_parts; ++part) {
+            if (std::ranges::find(parts, part) == parts.end()) continue;
+            const glm::vec3 normal = part == 0 ? surfel.normal : points[division.middles[part]].normal;
+            const float cosine = glm::dot(normal, points[i].normal);
+            if (!(cosine > best)) continue;
+            best = cosine;
+            division.part_of[i] = part;
+        }
+        if (best >= least_cosine) division.part_of[i] = most_cell_parts;
+    }
+    return division;
 }
 
 /// Appends a part of a cell, if it has points.
@@ -101,7 +127,7 @@ void append_part(SurfelSet& to, const SurfelSet& set, std::size_t cell, const Ce
 }  // namespace
 
 CellDivision divide_cell(const SurfelSet& set, std::size_t surfel, const TracedScene& scene,
-                         float ray_offset) {
+                         std::span<const std::uint32_t> first, float ray_offset) {
     const gpu::Surfel& own = set.surfels[surfel];
     const std::span<const gpu::CellPoint> points = points_of(set, surfel);
     const float lift = lift_of(own);
@@ -110,10 +136,21 @@ CellDivision divide_cell(const SurfelSet& set, std::size_t surfel, const TracedS
     for (const gpu::CellPoint& point : points) {
         seats.push_back(seat_of(point.position, point.normal, lift, scene, ray_offset));
     }
+    const LayerLimits limits = layer_limits(ray_offset);
+    const auto is_hidden = [&](const glm::vec3& position, const glm::vec3& normal,
+                               std::span<const SurfacePoint> places, std::size_t i) {
+        return !first.empty() && is_covered(scene, first, {position, normal, places[i].triangle}, limits);
+    };
+    const bool is_whole = surfel >= set.surfels.size() - set.emitting_count && !divides_emitters(set);
     CellDivision division;
-    division.part_of.assign(points.size(), most_cell_parts);
+    for (std::size_t i = 0; i < points.size(); ++i) {
+        const bool hidden =
+            is_hidden(points[i].position, points[i].normal, set.point_places, own.first_point + i);
+        division.part_of.push_back(hidden ? covered_part : most_cell_parts);
+    }
     Seat from = seat_of(own.position, own.normal, lift, scene, ray_offset);
-    for (std::uint8_t part = 0; part < most_cell_parts; ++part) {
+    const bool own_hidden = is_hidden(own.position, own.normal, set.surfel_places, surfel);
+    for (std::uint8_t part = own_hidden ? 1 : 0; part < most_cell_parts; ++part) {
         if (part > 0) {
             const auto middle = middle_of_rest(points, division);
             if (!middle) break;
@@ -123,7 +160,7 @@ CellDivision divide_cell(const SurfelSet& set, std::size_t surfel, const TracedS
         }
         for (std::size_t i = 0; i < seats.size(); ++i) {
             const bool is_left = division.part_of[i] == most_cell_parts;
-            if (is_left && sees(from, seats[i], scene)) division.part_of[i] = part;
+            if (is_left && (is_whole || sees(from, seats[i], scene))) division.part_of[i] = part;
         }
     }
     return division;
@@ -149,11 +186,13 @@ SurfelSet divided(const SurfelSet& set, std::span<const CellDivision> cells) {
     const std::size_t first_emitting = set.surfels.size() - set.emitting_count;
     for (std::size_t cell = 0; cell < cells.size(); ++cell) {
         const std::size_t before = parts.surfels.size();
+        const bool emits = cell >= first_emitting;
+        const CellDivision division = emits ? joined_by_normal(set, cell, cells[cell]) : cells[cell];
         for (std::uint8_t part = 0; part < most_cell_parts; ++part) {
-            append_part(parts, set, cell, cells[cell], part);
+            append_part(parts, set, cell, division, part);
         }
         const auto added = static_cast<std::uint32_t>(parts.surfels.size() - before);
-        if (cell >= first_emitting) parts.emitting_count += added;
+        if (emits) parts.emitting_count += added;
     }
     return parts;
 }

@@ -24,6 +24,7 @@ VplCounts counts_of(const SurfelSet& set) {
 /// What rays have found about the cells of a set: see TracedContent.
 struct DivisionKey {
     float ray_offset = 0.0F;  // metres
+    bool divides_emitters = false;
     bool operator==(const DivisionKey&) const = default;
 };
 
@@ -44,9 +45,10 @@ bool has_moved(const ScenePlacement& before, const ScenePlacement& now, std::uin
 }
 
 /// Divides new cells, and those again that have moved, or where something in a changed box is or was; those
-/// of `last` stay elsewhere. All, if `changed` is none.
-DividedCells divide_cells(const SurfelSet& set, const TracedScene& scene, float ray_offset,
-                          const DividedCells* last, const std::optional<std::vector<Box>>& changed) {
+/// of `last` stay elsewhere. All, if `changed` is none. `first`: as for divide_cell.
+DividedCells divide_cells(const SurfelSet& set, const TracedScene& scene,
+                          std::span<const std::uint32_t> first, float ray_offset, const DividedCells* last,
+                          const std::optional<std::vector<Box>>& changed) {
     std::unordered_map<std::uint64_t, const CellDivision*> known;
     for (std::size_t i = 0; last != nullptr && changed && i < last->ids.size(); ++i) {
         known.emplace(last->ids[i], &last->cells[i]);
@@ -61,7 +63,7 @@ DividedCells divide_cells(const SurfelSet& set, const TracedScene& scene, float 
     for (std::size_t i = 0; i < set.surfels.size(); ++i) {
         const auto found = known.find(set.ids[i]);
         const bool is_known = found != known.end() && stays(i);
-        now.cells.push_back(is_known ? *found->second : divide_cell(set, i, scene, ray_offset));
+        now.cells.push_back(is_known ? *found->second : divide_cell(set, i, scene, first, ray_offset));
     }
     return now;
 }
@@ -103,7 +105,7 @@ std::uint32_t form_groups(const Gpu& gpu, Execution& run, const GroupNode& node,
                           const std::optional<std::vector<Box>>& changed) {
     SurfelSet branches = branches_of(set);
     branches.ids = content_hashes(branches, branches.ids);
-    DividedCells parts = divide_cells(branches, scene, ray_offset, run.previous(node.divided), changed);
+    DividedCells parts = divide_cells(branches, scene, {}, ray_offset, run.previous(node.divided), changed);
     GroupedSurfels in_groups = grouped(set, branches, parts.cells);
     upload<gpu::SurfelGroup>(gpu, run, node.groups, in_groups.groups);
     run.set(node.divided, std::move(parts));
@@ -137,9 +139,11 @@ void place_surfels(const Gpu& gpu, Execution& run, const SurfelNode& node) {
     const TracedScene traced{*run.value(node.tracing.hierarchy), run.value(node.scene.layout),
                              run.value(node.scene.placement)};
     const float ray_offset = run.value(node.tracing.metrics).ray_offset();
-    const auto changed = node.known.outdated(run, run.value(node.motion), {ray_offset}, {});
     const SurfelSet whole = placed_in_world(run.value(node.spread), traced.layout, traced.placement);
-    DividedCells cells = divide_cells(whole, traced, ray_offset, run.previous(node.divided), changed);
+    const DivisionKey key{ray_offset, divides_emitters(whole)};
+    const auto changed = node.known.outdated(run, run.value(node.motion), key, {});
+    DividedCells cells = divide_cells(whole, traced, first_triangles(traced.layout), ray_offset,
+                                      run.previous(node.divided), changed);
     SurfelSet set = divided(whole, cells.cells);
     run.set(node.divided, std::move(cells));
     VplCounts counts = counts_of(set);
