@@ -155,12 +155,30 @@ void add_group(LitSurfel group, Surface surfaces[SURFACES], inout Gathered gathe
 
 layout(std430, binding = BINDING_LIT_EMITTERS) readonly restrict buffer LitEmitters { LitEmitter lit_emitters[]; };
 
+// Whether a cell is seen, of whose points `brightest` sends most: by a ray to the surfel; or where that is turned away, as
+// the cell is bent, to that point.
+float visibility_of_emitter(LitEmitter emitter, LitPoint brightest, Surface surface) {
+    bool faces = dot(emitter.normal, surface.position - emitter.position) > 0.0;
+    return faces ? visibility_by_ray(emitter.position, emitter.normal, surface)
+                 : visibility_by_ray(brightest.position, brightest.normal, surface);
+}
+
 // π times the irradiance from a surfel that emits light. That light is direct: its points are evaluated one by one.
 vec3 irradiance_from_emitter(LitEmitter emitter, Surface surface) {
     if (emitter.flux == vec3(0.0)) return vec3(0.0);
-    vec3 unoccluded = unoccluded_from_points(emitter.first_point, emitter.point_count, surface);
-    if (unoccluded == vec3(0.0)) return vec3(0.0);
-    return unoccluded * visibility_by_ray(emitter.position, emitter.normal, surface);
+    vec3 sum = vec3(0.0);
+    float most = 0.0;
+    uint brightest = emitter.first_point;
+    for (uint i = emitter.first_point; i < emitter.first_point + emitter.point_count; ++i) {
+        LitPoint point = lit_points[i];
+        vec3 light = point.flux * disc_term_at(surface, point.position, point.normal, point.area / PI);
+        sum += light;
+        if (dot(light, vec3(1.0)) <= most) continue;
+        most = dot(light, vec3(1.0));
+        brightest = i;
+    }
+    if (most == 0.0) return vec3(0.0);
+    return sum * visibility_of_emitter(emitter, lit_points[brightest], surface);
 }
 
 #endif

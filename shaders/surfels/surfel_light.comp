@@ -31,8 +31,8 @@ uniform uint emitting_count;  // surfels that emit light: the last ones
 uniform uint sky_patch_count;
 #endif
 
-// Most emitting surfels for which each cell point sums all that are near. With more, an invocation would have more rays
-// and points in its loops than software drivers run through.
+// Most near emitting surfels that each cell point sums. With more, an invocation would have more rays and points in its
+// loops than software drivers run through.
 const uint MOST_NEAR_EMITTERS = 256u;
 
 // Rays from each cell point to a directional light: what it lights often has edges within a cell. With more than
@@ -113,36 +113,40 @@ Share share_of(uint id, Surfel own, uint sources) {
 
 #ifdef EMITTERS
 
-// Irradiance from the cell of a surfel that emits light, unoccluded.
+// Irradiance from the cell of a surfel that emits light. A ray to the surfel finds whether it is hidden; or where that is
+// turned away, as the cell is bent, to the point of the cell that sends most.
 vec3 irradiance_from_cell(Surfel emitter, CellPoint point) {
     vec3 sum = vec3(0.0);
+    float most = 0.0;
+    bool faces = dot(emitter.normal, point.position - emitter.position) > 0.0;
+    vec3 target = emitter.position + ray_offset * emitter.normal;
     for (uint i = emitter.first_point; i < emitter.first_point + emitter.point_count; ++i) {
         CellPoint from = cell_points[i];
         float term = disc_term(from.position, from.normal, from.area / PI, point.position, point.normal);
-        if (term > 0.0) sum += from.area * term * emission_at(materials[from.material], from.uv);
+        if (term <= 0.0) continue;
+        vec3 light = from.area * term * emission_at(materials[from.material], from.uv);
+        sum += light;
+        if (faces || dot(light, vec3(1.0)) <= most) continue;
+        most = dot(light, vec3(1.0));
+        target = from.position + ray_offset * from.normal;
     }
-    return sum;
-}
-
-// Irradiance from the cell of a surfel that emits light.
-vec3 visible_from_cell(Surfel emitter, CellPoint point) {
-    vec3 irradiance = irradiance_from_cell(emitter, point);
-    if (irradiance == vec3(0.0)) return irradiance;
+    if (sum == vec3(0.0)) return sum;
     vec3 origin = point.position + ray_offset * point.normal;
-    vec3 target = emitter.position + ray_offset * emitter.normal;
-    return any_hit(origin, target - origin, 0.0, 1.0) ? vec3(0.0) : irradiance;
+    return any_hit(origin, target - origin, 0.0, 1.0) ? vec3(0.0) : sum;
 }
 
 // Irradiance from surfaces that emit light: the point's share of them, and all that are near its cell.
 vec3 irradiance_from_emitters(uint id, CellPoint point) {
     Surfel own = surfels[point.surfel];
     Share share = share_of(id, own, emitting_count);
-    bool sums_near = emitting_count <= MOST_NEAR_EMITTERS;
+    uint near_ones = 0u;
     vec3 sum = vec3(0.0);
     for (uint i = 0u; i < emitting_count; ++i) {
         Surfel emitter = surfels[surfel_count - emitting_count + i];
-        bool near = sums_near && is_near(emitter.position - own.position, own.width2 + emitter.width2);
-        if (near || i % share.step == share.first) sum += (near ? 1.0 : share.weight) * visible_from_cell(emitter, point);
+        bool near = near_ones < MOST_NEAR_EMITTERS &&
+                    is_near(emitter.position - own.position, own.width2 + emitter.width2);
+        if (near) ++near_ones;
+        if (near || i % share.step == share.first) sum += (near ? 1.0 : share.weight) * irradiance_from_cell(emitter, point);
     }
     return sum;
 }

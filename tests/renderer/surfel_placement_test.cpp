@@ -360,6 +360,28 @@ TEST_CASE("of many items some have surfels, which stand for all") {
     CHECK(mean == doctest::Approx(area).epsilon(0.1));
 }
 
+TEST_CASE("however many items emit light, each has a surfel, and they have all of their area") {
+    std::size_t before = 0;
+    for (const std::uint32_t count : {1U, 16U, 17U, 64U, 65U, 300U, most_emitting_items}) {
+        CAPTURE(count);
+        SceneTriangles lamps{.triangles = {}, .item_of = {}, .double_sided = {false}, .emits = {true}};
+        double area = 0.0;
+        for (std::uint32_t i = 0; i < count; ++i) {
+            const float size = i % 7 == 0 ? 1.0F : 0.1F;
+            add_parallelogram(lamps, i, {3.0F * static_cast<float>(i), 0, 0}, {size, 0, 0}, {0, size, 0});
+            area += static_cast<double>(size * size);
+        }
+        const SurfelSet set = placed(lamps, {.reflecting = 100, .emitting = 64}, test_seed());
+        CHECK(set.emitting_count == set.surfels.size());
+        CHECK(std::set(set.item_of.begin(), set.item_of.end()).size() == count);
+        CHECK(total_area(set) == doctest::Approx(area).epsilon(1e-4));
+        // One more lamp takes nothing from the others.
+        CHECK(set.surfels.size() == 64 + count - 1);
+        CHECK(set.surfels.size() >= before);
+        before = set.surfels.size();
+    }
+}
+
 TEST_CASE("triangles without an area have no surfels and do no harm") {
     SceneTriangles scene{.triangles = {}, .item_of = {}, .materials = {diffuse(glm::vec3(0.5F), true)}};
     add_parallelogram(scene, 0, {0, 0, 0}, {1, 0, 0}, {2, 0, 0});

@@ -30,9 +30,9 @@ VplSamples add_samples(FrameGraph& graph, Gpu& gpu, std::string_view name, std::
         pass.run([=, &gpu, &program](Execution& run) {
             ComputeSteps steps(gpu);
             const Groups all{groups(SAMPLE_COLUMNS * SAMPLE_ROWS, SAMPLE_GROUP)};
-            const std::uint32_t count = run.value(light.vpls.counts).sources();
-            for (const gl::Uniforms& part :
-                 loop_parts(gpu.device().limits(), count, iterations_a_vpl(light))) {
+            const VplCounts& counts = run.value(light.vpls.counts);
+            const std::uint32_t inner = iterations_a_vpl(light, counts);
+            for (const gl::Uniforms& part : loop_parts(gpu.device().limits(), counts.sources(), inner)) {
                 steps.run(program, all, part);
             }
         });

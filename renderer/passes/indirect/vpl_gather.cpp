@@ -145,8 +145,9 @@ GatheredVpls add_vpl_gather(FrameGraph& graph, Gpu& gpu, const Surfaces& surface
             gathered_variant(out.light,
                              block_variant(gpu.device().limits(), surfaces, vpl_light_variant(light))));
         pass.run([=, &gpu, &program](Execution& run) {
-            gather(gpu, run, program, view.size, interleave, run.value(light.vpls.counts).sources(),
-                   iterations_a_vpl(light));
+            const VplCounts& counts = run.value(light.vpls.counts);
+            gather(gpu, run, program, view.size, interleave, counts.sources(),
+                   iterations_a_vpl(light, counts));
         });
         return out;
     });

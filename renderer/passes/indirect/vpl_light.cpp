@@ -19,15 +19,12 @@ std::uint32_t group_size_of(const VplLight& light) {
 
 std::uint32_t iterations_of_single(const VplLight& light) {
     if (light.rays) {
-        return light.maps ? iterations_a_ray / 16
-                          : iterations_a_ray / 2;  // few need rays: see emitting_surfels
+        return light.maps ? iterations_a_ray / 16 : iterations_a_ray / 2;  // few need rays
     }
     return std::holds_alternative<LitSurfels>(light.vpls.records) ? 31 : 7;
 }
 
-}  // namespace
-
-std::uint32_t iterations_a_vpl(const VplLight& light) {
+std::uint32_t iterations_if_few_have_rays(const VplLight& light) {
     const std::uint32_t size = group_size_of(light);
     const std::uint32_t single = iterations_of_single(light);
     if (size == 1) return single;
@@ -37,10 +34,19 @@ std::uint32_t iterations_a_vpl(const VplLight& light) {
     return std::max((1 + size + size * points_a_surfel / 4) * 13 / 8, single);
 }
 
+}  // namespace
+
+std::uint32_t iterations_a_vpl(const VplLight& light, const VplCounts& counts) {
+    const std::uint32_t few = iterations_if_few_have_rays(light);
+    if (!light.rays || counts.sources() == 0) return few;
+    const std::uint64_t with_rays = counts.sources() - counts.mapped_sources();
+    return std::max(few, static_cast<std::uint32_t>(iterations_a_ray / 2 * with_rays / counts.sources()));
+}
+
 std::uint32_t vpls_a_loop(const gl::Limits& limits, const VplLight& light) {
     constexpr std::uint64_t all = std::numeric_limits<std::int32_t>::max();
     return static_cast<std::uint32_t>(
-        std::clamp<std::uint64_t>(limits.loop_iterations / iterations_a_vpl(light), 1, all));
+        std::clamp<std::uint64_t>(limits.loop_iterations / iterations_if_few_have_rays(light), 1, all));
 }
 
 std::vector<std::string> vpl_light_variant(const VplLight& light) {

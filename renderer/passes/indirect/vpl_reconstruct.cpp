@@ -119,7 +119,8 @@ GatheredLight add_fill(FrameGraph& graph, Gpu& gpu, const Pixels& pixels, const 
             out.flow = pass.write(*found.light.flow, {Usage::storage, IMAGE_INDIRECT_DIRECTION});
         }
         pass.run([=, &gpu, &program](Execution& run) {
-            fill(gpu, program, run.value(light.vpls.counts).sources(), one_in, iterations_a_vpl(light));
+            const VplCounts& counts = run.value(light.vpls.counts);
+            fill(gpu, program, counts.sources(), one_in, iterations_a_vpl(light, counts));
         });
         return out;
     });

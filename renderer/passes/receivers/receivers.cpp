@@ -33,8 +33,9 @@ std::vector<gl::Uniforms> parts_of(const gl::Limits& limits, const Execution& ru
         parts.push_back(part + gl::Uniforms{{"adds_lights", true}});
     }
     if (!lighting.vpls) return parts;
-    const std::uint32_t vpls = run.value(lighting.vpls->vpls.counts).sources();
-    for (const gl::Uniforms& part : loop_parts(limits, vpls, iterations_a_vpl(*lighting.vpls))) {
+    const VplCounts& vpls = run.value(lighting.vpls->vpls.counts);
+    const std::uint32_t inner = iterations_a_vpl(*lighting.vpls, vpls);
+    for (const gl::Uniforms& part : loop_parts(limits, vpls.sources(), inner)) {
         parts.push_back(part + gl::Uniforms{{"adds_lights", false}});
     }
     return parts;

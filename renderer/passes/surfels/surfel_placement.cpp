@@ -136,10 +136,9 @@ double SurfelPlacement::weight_of(const Cell& cell, const Weights& weights) cons
     return size * (1.0 + weight_of_bend * static_cast<double>(patch.bend));
 }
 
-/// Items that stand for all: each is chosen with a probability, a power of 1/2, that is proportional to its
-/// weight, and stands for the inverse of it. At least one.
-std::vector<SurfelPlacement::Cell> SurfelPlacement::share_items(const std::vector<Root>& roots,
-                                                                std::uint32_t count,
+/// Items that stand for all, about `most` of them: each is chosen with a probability, a power of 1/2, that is
+/// proportional to its weight, and stands for the inverse of it. At least one.
+std::vector<SurfelPlacement::Cell> SurfelPlacement::share_items(const std::vector<Root>& roots, double most,
                                                                 const Weights& by_size) const {
     std::vector<double> weights;
     double largest = 0.0;
@@ -157,7 +156,7 @@ std::vector<SurfelPlacement::Cell> SurfelPlacement::share_items(const std::vecto
         return sum;
     };
     double whole = std::exp2(std::floor(std::log2(largest)) - 32.0);
-    while (expected(whole) > std::max(0.25 * count, 1.0)) whole *= 2.0;
+    while (expected(whole) > most) whole *= 2.0;
     std::vector<Cell> cells;
     for (std::size_t i = 0; i < roots.size(); ++i) {
         const double scale = scale_of(weights[i], whole);
@@ -244,12 +243,11 @@ SurfelPlacement::CutCells SurfelPlacement::cells_of(std::vector<Cell> whole, std
     return of;
 }
 
-SurfelPlacement::CutCells SurfelPlacement::cells_on(const std::vector<Root>& roots, std::uint32_t count,
+/// `chosen`: items, of `roots`.
+SurfelPlacement::CutCells SurfelPlacement::cells_on(const std::vector<Root>& roots,
+                                                    const std::vector<Cell>& chosen, std::uint32_t count,
                                                     const Weights& weights, const LastCut& last) {
-    if (count == 0 || roots.empty()) return {};
-    const std::vector<Cell> all = whole_items(roots, weights);
-    CutCells wanted = cells_of(shares_items(roots.size(), count) ? share_items(roots, count, weights) : all,
-                               count, weights, nullptr);
+    CutCells wanted = cells_of(chosen, count, weights, nullptr);
     if (last.cut == nullptr) return wanted;
     std::vector<std::uint32_t> patches;
     patches.reserve(roots.size());
@@ -258,7 +256,7 @@ SurfelPlacement::CutCells SurfelPlacement::cells_on(const std::vector<Root>& roo
         follow(tree_, patches, {*last.cut, wanted.cut}, {count, last.most_new, last.gain});
     if (followed.left.all == 0) return wanted;
     std::vector<Cell> whole;
-    for (const Cell& item : all) {
+    for (const Cell& item : whole_items(roots, weights)) {
         const auto found = followed.cut.scales.find(tree_[item.patch].id);
         if (found == followed.cut.scales.end()) continue;
         whole.push_back(item);
@@ -267,6 +265,26 @@ SurfelPlacement::CutCells SurfelPlacement::cells_on(const std::vector<Root>& roo
     CutCells of = cells_of(std::move(whole), count, weights, &followed.cut);
     of.left = followed.left;
     return of;
+}
+
+SurfelPlacement::CutCells SurfelPlacement::reflecting_cells(std::uint32_t count, const Weights& weights,
+                                                            const LastCut& last) {
+    if (count == 0 || reflecting_.empty()) return {};
+    const std::vector<Cell> items = shares_items(reflecting_.size(), count)
+                                        ? share_items(reflecting_, std::max(0.25 * count, 1.0), weights)
+                                        : whole_items(reflecting_, weights);
+    return cells_on(reflecting_, items, count, weights, last);
+}
+
+/// `count`: emitting_surfels.
+SurfelPlacement::CutCells SurfelPlacement::emitting_cells(std::uint32_t count, const Weights& weights,
+                                                          const LastCut& last) {
+    if (count == 0 || emitting_.empty()) return {};
+    const std::vector<Cell> items = emitting_.size() > most_emitting_items
+                                        ? share_items(emitting_, most_emitting_items, weights)
+                                        : whole_items(emitting_, weights);
+    const auto first_ones = static_cast<std::uint32_t>(items.size());
+    return cells_on(emitting_, items, count + first_ones - 1, weights, last);
 }
 
 /// Appends the surfel of a cell, unless all of its points are in holes.
@@ -326,9 +344,12 @@ SurfelSet SurfelPlacement::place(const SurfelCounts& counts, std::span<const std
         set.cut.merge(std::move(of.cut));
         set.left += of.left;
     };
-    append_all(cells_on(reflecting_, counts.reflecting, weights_of(foci, guide), last), points_a_surfel);
+    append_all(reflecting_cells(counts.reflecting, weights_of(foci, guide), last), points_a_surfel);
     const std::size_t reflecting = set.surfels.size();
-    append_all(cells_on(emitting_, counts.emitting, weights_of(foci, {}), last), points_an_emitter);
+    CutCells emitting = emitting_cells(counts.emitting, weights_of(foci, {}), last);
+    const auto cells = static_cast<std::uint32_t>(std::max<std::size_t>(emitting.cells.size(), 1));
+    append_all(std::move(emitting),
+               std::clamp(points_an_emitter * counts.emitting / cells, points_a_surfel, points_an_emitter));
     set.emitting_count = static_cast<std::uint32_t>(set.surfels.size() - reflecting);
     return set;
 }

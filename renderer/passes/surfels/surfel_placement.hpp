@@ -53,16 +53,20 @@ struct SceneTriangles {
 /// a branch see them as one.
 inline constexpr std::uint32_t most_branches = 512;
 
-/// About how many points a cell has, of surfels that only reflect light and of those that emit it.
+/// About how many points a cell has, of surfels that only reflect light and of those that emit it; fewer of
+/// these where there are more than emitting_surfels, but as many as of the others.
 inline constexpr std::uint32_t points_a_surfel = 16;
 inline constexpr std::uint32_t points_an_emitter = 64;
 
-/// About how many surfels are placed on surfaces that emit light, in addition to `count` on the others. They
-/// light the scene directly, so that their number determines how smooth soft shadows are. They have no depth
-/// maps, and each pixel traces rays to its share of them: see max_vpls_per_invocation.
+/// About how many surfels are placed on surfaces that emit light, in addition to `count` on the others and
+/// to the first one of each item. They light the scene directly, so that their number determines how smooth
+/// soft shadows are. They have no depth maps, and each pixel traces rays to its share of them.
 [[nodiscard]] constexpr std::uint32_t emitting_surfels(std::uint32_t count) {
-    return std::clamp(count / 8, 64U, 128U);
+    return std::max(count / 8, 64U);
 }
+
+/// Most items that emit light and have surfels of their own. Of more, some also stand for others.
+inline constexpr std::uint32_t most_emitting_items = 1024;
 
 /// Whether so many items are too many for `count` surfels, so that one stands for several.
 [[nodiscard]] constexpr bool shares_items(std::size_t items, std::uint32_t count) {
@@ -99,7 +103,7 @@ struct LastCut {
 /// Each part of the cell has a sample point, unless that is in a hole of a mask: the area of the cell is that
 /// of the parts whose points are on the surface. The point nearest to the cell's centre is its surfel. If
 /// there are more than 16 items, and more than a quarter as many as surfels wanted, some, chosen at random,
-/// also stand for others.
+/// also stand for others; of items that emit light, if there are more than most_emitting_items.
 ///
 /// A patch has the same cell wherever the focus is. The set depends on the arguments of the constructor and
 /// of `place` only: the trees are kept between calls just to save time.
@@ -156,11 +160,13 @@ class SurfelPlacement {
     [[nodiscard]] Weights weights_of(std::span<const std::vector<Focus>> foci,
                                      std::span<const GuidePoint> guide) const;
     [[nodiscard]] double weight_of(const Cell& cell, const Weights& weights) const;
-    [[nodiscard]] std::vector<Cell> share_items(const std::vector<Root>& roots, std::uint32_t count,
+    [[nodiscard]] std::vector<Cell> share_items(const std::vector<Root>& roots, double most,
                                                 const Weights& weights) const;
     [[nodiscard]] std::vector<Cell> whole_items(const std::vector<Root>& roots, const Weights& weights) const;
-    [[nodiscard]] CutCells cells_on(const std::vector<Root>& roots, std::uint32_t count,
-                                    const Weights& weights, const LastCut& last);
+    [[nodiscard]] CutCells cells_on(const std::vector<Root>& roots, const std::vector<Cell>& chosen,
+                                    std::uint32_t count, const Weights& weights, const LastCut& last);
+    [[nodiscard]] CutCells reflecting_cells(std::uint32_t count, const Weights& weights, const LastCut& last);
+    [[nodiscard]] CutCells emitting_cells(std::uint32_t count, const Weights& weights, const LastCut& last);
     [[nodiscard]] CutCells cells_of(std::vector<Cell> whole, std::uint32_t count, const Weights& weights,
                                     const PatchCut* within);
     void split(std::vector<Cell>& cells, std::size_t index, std::span<const GuidePoint> guide) const;
