@@ -3,7 +3,7 @@
 // cell; its first SURFEL_GROUP invocations add up, and all of them call each function.
 #include "surfels/surfel_bounced.glsl"
 
-layout(std430, binding = BINDING_FLUX_ACCOUNT) restrict buffer Flux { FluxAccount flux[]; };
+layout(std430, binding = BINDING_FLUX_ACCOUNT) OF_THE_GROUP restrict buffer Flux { FluxAccount flux[]; };
 
 uniform bool solves;  // all bounces are wanted, in the fewest steps; otherwise each step is a bounce
 
@@ -34,11 +34,15 @@ struct Products {
 shared Products products[SURFEL_GROUP];
 shared Step step_of_all;
 
+vec3 quotient(vec3 a, vec3 b) { return mix(vec3(0.0), a / b, greaterThan(b, vec3(0.0))); }
+
 Products products_of(uint id) {
     vec3 albedo = cells[id].albedo;
-    vec3 left = bounced[at_left(id)].rgb;
-    vec3 r = left - albedo * bounced[at_gathered(id)].rgb;
-    vec3 s = bounced[at_step(id)].rgb - albedo * bounced[at_step_gathered(id)].rgb;
+    // Relative to the emitted flux, whose square may be too large for a float.
+    vec3 unit = quotient(vec3(1.0), flux[gl_WorkGroupID.x].emitted);
+    vec3 left = unit * bounced[at_left(id)].rgb;
+    vec3 r = left - unit * albedo * bounced[at_gathered(id)].rgb;
+    vec3 s = unit * (bounced[at_step(id)].rgb - albedo * bounced[at_step_gathered(id)].rgb);
     // In this measure a bounce is symmetric, as far as form factors are reciprocal.
     vec3 weight = mix(vec3(0.0), cells[id].area / albedo, greaterThan(albedo, vec3(1e-6)));
     return Products(weight * r * r, weight * r * s, weight * s * s, weight * left * r, weight * left * s);
@@ -51,8 +55,6 @@ void add(inout Products sum, Products other) {
     sum.r += other.r;
     sum.s += other.s;
 }
-
-vec3 quotient(vec3 a, vec3 b) { return mix(vec3(0.0), a / b, greaterThan(b, vec3(0.0))); }
 
 // The step after which the least is left. See README.md, "Steps of bounces".
 Step best_step() {
