@@ -113,16 +113,12 @@ vec4 hiding_slack(SeenPlanes seen, vec4 planes, vec3 facing, float reach) {
     return reach * vec4(lessThan(cosine * abs(cosine), -0.25 * length2));
 }
 
-// Where a wall hides the surface in some of the texels, others that do not see the surface hide it, too: what they see is
-// before the wall, as the floor in front of it is; or, if the surface is so close behind the wall that both may end in one
-// edge, far behind the surface.
-vec4 with_unseeing(vec4 hides, SeenPlanes seen, vec4 planes, float own_depth, float reach) {
-    vec3 walls = vec3(dot(hides, seen.along_x), dot(hides, seen.along_y), dot(hides, seen.along_z));  // their sum
+// Whether what a texel sees is before walls that hide the surface in others, whose planes have this sum: as the floor in
+// front of a wall is.
+vec4 is_before(SeenPlanes seen, vec4 hides) {
+    vec3 walls = vec3(dot(hides, seen.along_x), dot(hides, seen.along_y), dot(hides, seen.along_z));
     vec4 depths = walls.x * seen.x + walls.y * seen.y + walls.z * seen.z;
-    vec4 before_wall = vec4(greaterThan(dot(hides, vec4(1.0)) * seen.depth, depths));
-    bool close = most(hides * planes) < own_depth * (1.0 + 2.0 * reach);
-    vec4 far_behind = close ? vec4(lessThan(planes, vec4(0.8 * own_depth))) : vec4(0.0);
-    return max(hides, max(before_wall, far_behind));
+    return vec4(greaterThan(dot(hides, vec4(1.0)) * seen.depth, depths));
 }
 
 // A map covers the hemisphere along its axis only.
@@ -131,8 +127,9 @@ vec3 above_horizon(vec3 at) { return vec3(at.xy, max(at.z, 0.0)); }
 const float OUTSIDE = 1.0;  // visibility beyond the field of view of a perspective map
 
 // Share of the VPL's light that reaches the surface, in [0, 1], by the four texels around its direction. What a texel sees
-// hides the surface if the surface is behind its plane, and it before the plane of the surface. `map`: see vpl_atlas.glsl.
-// See README.md, "Planes in VPL maps".
+// hides the surface if the surface is behind its plane, and it before the plane of the surface. Where some hide it, others
+// show it only if their planes are near it, as on the bumps of a rough surface: past the edge of a wall they may see
+// anything. `map`: see vpl_atlas.glsl. See README.md, "Planes in VPL maps".
 float visibility_of_vpl(uint map, VplPose pose, Surface surface) {
     MapFrame frame = pose.frame;
     vec3 facing = frame.map_from_world * face_normal(surface);
@@ -143,14 +140,16 @@ float visibility_of_vpl(uint map, VplPose pose, Surface surface) {
     vec2 place = vpl_map_place(frame, point);
     if (max(abs(place.x), abs(place.y)) > 1.001) return OUTSIDE;
     SeenPlanes seen = planes_around(map, frame, place);
-    float own_depth = vpl_constants.map_near * inverse_length;
+    vec4 own_depth = vec4(vpl_constants.map_near * inverse_length);
     float reach = reach_of_texel(frame);
     vec4 planes = depths_at(seen, point);
     vec4 slack = hiding_slack(seen, planes, facing, reach);
     vec4 before = vec4(greaterThan(seen.depth, depths_of_plane(seen, at, facing)));
     vec4 hides = before * vec4(greaterThan(planes, own_depth * (1.0 + slack)));
-    if (most(hides) > least(hides)) hides = with_unseeing(hides, seen, planes, own_depth, reach);
-    return dot(seen.weight, 1.0 - hides);
+    if (most(hides) == 0.0) return 1.0;
+    vec4 near = vec4(lessThan(abs(planes - own_depth), 0.25 * reach * own_depth));
+    float shown = dot(seen.weight, near * (1.0 - hides) * (1.0 - is_before(seen, hides)));
+    return shown > 0.0 ? shown / (shown + dot(seen.weight, hides)) : 0.0;
 }
 
 #else

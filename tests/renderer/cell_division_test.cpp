@@ -299,6 +299,19 @@ TEST_CASE("of surfaces that lie on each other only the front one counts, or the 
     CHECK(is_about(areas(0.0F, square(2.0F, diffuse(glm::vec3(0.5F), true))), {1.0, 0.0}));
 }
 
+TEST_CASE("a surfel is as high as the highest point of its part, but at most halfway below what is above") {
+    SurfelSet bumpy = floor_cell(4);
+    bumpy.points[5].position.y = 0.03F;
+    bumpy.points[6].position.y = -0.2F;
+    Surroundings open;
+    CHECK(divided_in(open, bumpy).surfels[0].position.y == doctest::Approx(0.03));
+    CHECK(divided_in(open, floor_cell(4)).surfels[0].position == floor_cell(4).surfels[0].position);
+    Surroundings covered;
+    covered.add(wall(), glm::translate(glm::mat4(1.0F), {0.0F, 0.04F, 0.0F}));
+    // Rays begin at the offset.
+    CHECK(divided_in(covered, bumpy).surfels[0].position.y == doctest::Approx(0.02).epsilon(0.01));
+}
+
 TEST_CASE("what stands or lies on a cell has the points below it to itself, also if it is low") {
     for (const float height : {0.01F, 0.2F, 2.0F}) {
         CAPTURE(height);

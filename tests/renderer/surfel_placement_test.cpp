@@ -364,7 +364,10 @@ TEST_CASE("however many items emit light, each has a surfel, and they have all o
     std::size_t before = 0;
     for (const std::uint32_t count : {1U, 16U, 17U, 64U, 65U, 300U, most_emitting_items}) {
         CAPTURE(count);
-        SceneTriangles lamps{.triangles = {}, .item_of = {}, .double_sided = {false}, .emits = {true}};
+        Material glowing;
+        glowing.emissive = glm::vec3(1.0F);
+        SceneTriangles lamps{
+            .triangles = {}, .item_of = {}, .materials = {std::make_shared<const Material>(glowing)}};
         double area = 0.0;
         for (std::uint32_t i = 0; i < count; ++i) {
             const float size = i % 7 == 0 ? 1.0F : 0.1F;

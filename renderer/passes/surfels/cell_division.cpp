@@ -103,6 +103,7 @@ void append_part(SurfelSet& to, const SurfelSet& set, std::size_t cell, const Ce
         surfel.normal = set.points[middle].normal;
         place = set.point_places[middle];
     }
+    surfel.position += division.lifts[part] * surfel.normal;
     surfel.first_point = static_cast<std::uint32_t>(to.points.size());
     surfel.area = 0.0F;
     for (std::size_t i = 0; i < division.part_of.size(); ++i) {
@@ -160,8 +161,12 @@ CellDivision divide_cell(const SurfelSet& set, std::size_t surfel, const TracedS
         }
         for (std::size_t i = 0; i < seats.size(); ++i) {
             const bool is_left = division.part_of[i] == most_cell_parts;
-            if (is_left && (is_whole || sees(from, seats[i], scene))) division.part_of[i] = part;
+            if (!is_left || !(is_whole || sees(from, seats[i], scene))) continue;
+            division.part_of[i] = part;
+            const float height = glm::dot(from.normal, seats[i].position - from.position);
+            division.lifts[part] = std::max(division.lifts[part], height);
         }
+        division.lifts[part] = std::min(division.lifts[part], glm::distance(from.position, from.above));
     }
     return division;
 }

@@ -32,6 +32,9 @@ struct CellDivision {
     std::vector<std::uint8_t> part_of;  ///< by point of the cell
     /// By part from 1 on: the point of the cell where its surfel is.
     std::array<std::uint32_t, most_cell_parts> middles{};
+    /// By part: metres by which its surfel is raised along its normal, to the height of the part's highest
+    /// point: what hides a pit of a rough surface must not hide all of it.
+    std::array<float, most_cell_parts> lifts{};
     bool operator==(const CellDivision&) const = default;
 };
 
