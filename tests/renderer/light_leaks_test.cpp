@@ -5,6 +5,7 @@
 #include <cstddef>
 #include <glm/gtc/constants.hpp>
 #include <glm/gtc/quaternion.hpp>
+#include <memory>
 #include <string>
 #include <string_view>
 #include <vector>
@@ -68,6 +69,34 @@ Scene room_above_ground() {
     scene.world.set(scene.light, at({1.8F, -0.5F, 0.3F}));
     add(scene.world, at({0.0F, -1.5F, 0.0F}), MeshInstance{square(4.0F, diffuse(glm::vec3(0.8F)))});
     scene.world.set(scene.camera, looking({2.5F, 0.5F, 0.5F}, {2.0F, -1.5F, 0.3F}));
+    return scene;
+}
+
+/// A box with these lower and upper corners.
+void add_box(World& world, glm::vec3 lower, glm::vec3 upper,
+             const std::shared_ptr<const Material>& material) {
+    add(world, Transform{.translation = 0.5F * (lower + upper), .scale = 0.5F * (upper - lower)},
+        MeshInstance{box_outwards(1.0F, material)});
+}
+
+/// A room of 4 m × 2.5 m × 3 m, around whose walls, slabs of this thickness that only touch each other, lies
+/// a ground in the sun, of the scene's light. There is a lamp of 60 cd in the room.
+Scene room_in_the_sun(float thickness) {
+    Scene scene;
+    const auto material = diffuse(glm::vec3(0.8F));
+    const glm::vec3 in_low(-2.0F, 0.0F, -1.5F), in_high(2.0F, 2.5F, 1.5F);
+    const glm::vec3 low = in_low - thickness, high = in_high + thickness;
+    add_box(scene.world, low, {high.x, in_low.y, high.z}, material);
+    add_box(scene.world, {low.x, in_high.y, low.z}, high, material);
+    add_box(scene.world, {low.x, in_low.y, low.z}, {in_low.x, in_high.y, high.z}, material);
+    add_box(scene.world, {in_high.x, in_low.y, low.z}, {high.x, in_high.y, high.z}, material);
+    add_box(scene.world, {in_low.x, in_low.y, low.z}, {in_high.x, in_high.y, in_low.z}, material);
+    add_box(scene.world, {in_low.x, in_low.y, in_high.z}, {in_high.x, in_high.y, high.z}, material);
+    add(scene.world, at({0.0F, low.y, 0.0F}), MeshInstance{square(12.0F, diffuse(glm::vec3(0.7F)))});
+    add(scene.world, at({0.0F, 2.0F, 0.0F}), PointLight{.intensity = 60.0F});
+    scene.light = add(scene.world, looking({2.0F, 3.0F, 1.0F}, {}), DirectionalLight{.illuminance = 1e5F});
+    scene.camera =
+        add(scene.world, looking({1.5F, 1.3F, 1.2F}, {-1.0F, 1.0F, -1.0F}), Camera{.vertical_fov = 1.4F});
     return scene;
 }
 
@@ -205,6 +234,25 @@ TEST_CASE_FIXTURE(LightLeakTests,
                 }
             }
         }
+    }
+}
+
+TEST_CASE_FIXTURE(LightLeakTests, "the sun outside of a room with a lamp adds nothing to its light") {
+    Configuration configuration = vpl_light(VplPlacement::surfels, VplVisibility::maps);
+    configuration.vpls.count = 512;
+    configure(configuration);
+    Scene scene = room_in_the_sun(0.2F);
+    const Picture in_sun = render(scene, size);
+    scene.world.set(scene.light, DirectionalLight{.illuminance = 0.0F});
+    const Picture alone = render(scene, size);
+    REQUIRE(mean(alone) > 1.0);
+    // Rounding, since other surfels may be chosen: where the light comes from that is seen depends on all of
+    // it.
+    CHECK(mean(in_sun) <= 1.01 * mean(alone));
+    for (std::size_t i = 0; i < alone.pixels.size(); ++i) {
+        if (in_sun.pixels[i].g <= 1.01F * alone.pixels[i].g) continue;
+        CAPTURE(i);
+        CHECK(in_sun.pixels[i].g <= 1.01F * alone.pixels[i].g);
     }
 }
 

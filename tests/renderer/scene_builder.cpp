@@ -107,6 +107,16 @@ std::shared_ptr<const Mesh> box_inwards(float half, std::shared_ptr<const Materi
     return mesh_of(std::move(primitive));
 }
 
+std::shared_ptr<const Mesh> box_outwards(float half, std::shared_ptr<const Material> material) {
+    Mesh mesh = *box_inwards(half, std::move(material));
+    Primitive& primitive = mesh.primitives.front();
+    for (Vertex& vertex : primitive.vertices) {
+        vertex.normal = -vertex.normal;
+    }
+    std::ranges::reverse(primitive.indices);
+    return std::make_shared<const Mesh>(std::move(mesh));
+}
+
 std::shared_ptr<const Mesh> sphere_inwards(float radius, int subdivisions,
                                            std::shared_ptr<const Material> material) {
     auto [corners, triangles] = icosahedron();

@@ -31,6 +31,8 @@ namespace candela {
 [[nodiscard]] std::shared_ptr<const Mesh> square(float half, std::shared_ptr<const Material> material);
 /// A cube around the origin whose faces look inwards.
 [[nodiscard]] std::shared_ptr<const Mesh> box_inwards(float half, std::shared_ptr<const Material> material);
+/// The same, facing outwards.
+[[nodiscard]] std::shared_ptr<const Mesh> box_outwards(float half, std::shared_ptr<const Material> material);
 /// An icosahedron with 20·4ⁿ triangles whose corners are on the sphere; faces and (radial) normals point
 /// inwards.
 [[nodiscard]] std::shared_ptr<const Mesh> sphere_inwards(float radius, int subdivisions,

@@ -25,17 +25,6 @@ std::shared_ptr<const Material> glass(glm::vec3 albedo, float alpha, bool double
     return std::make_shared<const Material>(std::move(material));
 }
 
-/// A cube around the origin whose faces look outwards.
-std::shared_ptr<const Mesh> box_outwards(float half, std::shared_ptr<const Material> material) {
-    Mesh mesh = *box_inwards(half, std::move(material));
-    Primitive& primitive = mesh.primitives.front();
-    for (Vertex& vertex : primitive.vertices) {
-        vertex.normal = -vertex.normal;
-    }
-    std::ranges::reverse(primitive.indices);
-    return std::make_shared<const Mesh>(std::move(mesh));
-}
-
 /// A horizontal square pane around the y axis.
 struct Pane {
     float height;  ///< metres
