@@ -72,7 +72,7 @@ bool read_bool(const Json& json, const std::string& place) {
 }
 
 std::string read_text(const Json& json, const std::string& place) {
-    if (!json.is_string() || json == "") fail(place, "is not a word");
+    if (!json.is_string() || json.get_ref<const std::string&>().empty()) fail(place, "is not a word");
     return json;
 }
 

@@ -159,8 +159,8 @@ layout(std430, binding = BINDING_LIT_EMITTERS) readonly restrict buffer LitEmitt
 // the cell is bent, to that point.
 float visibility_of_emitter(LitEmitter emitter, LitPoint brightest, Surface surface) {
     bool faces = dot(emitter.normal, surface.position - emitter.position) > 0.0;
-    return faces ? visibility_by_ray(emitter.position, emitter.normal, surface)
-                 : visibility_by_ray(brightest.position, brightest.normal, surface);
+    vec3 position = faces ? emitter.position : brightest.position;
+    return visibility_by_ray(position, faces ? emitter.normal : brightest.normal, surface);
 }
 
 // π times the irradiance from a surfel that emits light. That light is direct: its points are evaluated one by one.

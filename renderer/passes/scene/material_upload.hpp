@@ -1,10 +1,10 @@
 #pragma once
 
 #include <array>
-#include <compare>
 #include <cstddef>
 #include <cstdint>
 #include <memory>
+#include <tuple>
 #include <vector>
 
 #include <candela/scene/components.hpp>
@@ -22,7 +22,10 @@ struct ImageUse {
     const Image* image = nullptr;
     bool normals = false;  ///< it has the levels of normal_levels
     float cutoff = 0.0F;   ///< of a mask, for the image's own alpha; 0: none
-    auto operator<=>(const ImageUse&) const = default;
+    bool operator==(const ImageUse&) const = default;
+    [[nodiscard]] bool operator<(const ImageUse& other) const {
+        return std::tie(image, normals, cutoff) < std::tie(other.image, other.normals, other.cutoff);
+    }
 };
 
 /// An image on the GPU: as a texture for rasterisation, and in the buffer of texels for tracing, where large
