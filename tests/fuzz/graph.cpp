@@ -43,7 +43,7 @@ class Choices {
 /// The graphs and the checks of the random tests.
 void check_contents(Choices choices) {
     random_graph::choose = [&choices](std::size_t count) { return choices(count); };
-    const random_graph::Graph graph = random_graph::make({.passes = 20, .histories = false});
+    const random_graph::Graph graph = random_graph::make({.passes = 20});
     random_graph::Host host = random_graph::make_host(graph);
     random_graph::Machine machine(graph);
     machine.runtime().set_verification(true);
