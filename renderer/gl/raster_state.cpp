@@ -32,9 +32,6 @@ void set_blending(const Functions& gl, Blending blending) {
             gl.BlendFuncSeparate(GL_ONE, GL_ONE, GL_ONE, GL_ZERO);
             break;
         case Blending::cover:
-            gl.BlendFuncSeparate(GL_ONE, GL_ONE_MINUS_SRC1_COLOR, GL_ONE, GL_ZERO);
-            break;
-        case Blending::mean:
             gl.BlendFunc(GL_ONE, GL_ONE_MINUS_SRC1_COLOR);
             break;
     }

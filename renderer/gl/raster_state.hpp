@@ -11,9 +11,8 @@ enum class DepthTest : std::uint8_t { off, nearer, equal, always };
 
 enum class Blending : std::uint8_t {
     off,
-    add,    ///< adds to colour and replaces alpha
-    cover,  ///< as `add`, after what is there is multiplied by 1 - the second output of the shader
-    mean    ///< as `cover`, alpha as well
+    add,   ///< adds to colour and replaces alpha
+    cover  ///< adds, after what is there was multiplied by 1 - the second output of the shader
 };
 
 enum class Culling : std::uint8_t { off, back, front };

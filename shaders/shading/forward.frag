@@ -77,7 +77,7 @@ void main() {
 #else
     reflected[0] = alpha * (reflected[0] + emitted);
 #endif
-    cover = vec4(alpha * (1.0 - passing), alpha);
+    cover = vec4(alpha * (1.0 - passing), 1.0);
 #endif
     radiance = vec4(reflected[0], 1.0);
 }

@@ -124,6 +124,7 @@ vec4 is_before(SeenPlanes seen, vec4 hides) {
 // A map covers the hemisphere along its axis only.
 vec3 above_horizon(vec3 at) { return vec3(at.xy, max(at.z, 0.0)); }
 
+const float NEAR = 0.25;  // of a texel's diagonal; by trial: rough surfaces need more, thin walls less
 const float OUTSIDE = 1.0;  // visibility beyond the field of view of a perspective map
 
 // Share of the VPL's light that reaches the surface, in [0, 1], by the four texels around its direction. What a texel sees
@@ -140,14 +141,14 @@ float visibility_of_vpl(uint map, VplPose pose, Surface surface) {
     vec2 place = vpl_map_place(frame, point);
     if (max(abs(place.x), abs(place.y)) > 1.001) return OUTSIDE;
     SeenPlanes seen = planes_around(map, frame, place);
-    vec4 own_depth = vec4(vpl_constants.map_near * inverse_length);
+    float own_depth = vpl_constants.map_near * inverse_length;
     float reach = reach_of_texel(frame);
     vec4 planes = depths_at(seen, point);
     vec4 slack = hiding_slack(seen, planes, facing, reach);
     vec4 before = vec4(greaterThan(seen.depth, depths_of_plane(seen, at, facing)));
     vec4 hides = before * vec4(greaterThan(planes, own_depth * (1.0 + slack)));
     if (most(hides) == 0.0) return 1.0;
-    vec4 near = vec4(lessThan(abs(planes - own_depth), 0.25 * reach * own_depth));
+    vec4 near = vec4(lessThan(abs(planes - own_depth), vec4(NEAR * reach * own_depth)));
     float shown = dot(seen.weight, near * (1.0 - hides) * (1.0 - is_before(seen, hides)));
     return shown > 0.0 ? shown / (shown + dot(seen.weight, hides)) : 0.0;
 }

@@ -1,5 +1,5 @@
-// The program in engine/README.md, word for word: CMakeLists.txt extracts it. It looks at what was drawn
-// before it is shown, and closes the window after a few frames.
+// The program sandbox/hosts/graph.cpp. It looks at what was drawn before it is shown, and closes the window
+// after a few frames.
 
 // clang-format off
 #include <epoxy/gl.h>  // before GLFW, which would include another header of GL
@@ -33,4 +33,4 @@ int close_after_four(GLFWwindow*) {
 
 #define glfwSwapBuffers look_and_swap
 #define glfwWindowShouldClose close_after_four
-#include "graph_example.inc"
+#include "../../sandbox/hosts/graph.cpp"

@@ -79,9 +79,10 @@ void add_box(World& world, glm::vec3 lower, glm::vec3 upper,
         MeshInstance{box_outwards(1.0F, material)});
 }
 
-/// A room of 4 m × 2.5 m × 3 m, around whose walls, slabs of this thickness that only touch each other, lies
+/// A room of 4 m × 2.5 m × 3 m, around whose walls, slabs of 20 cm that only touch each other, lies
 /// a ground in the sun, of the scene's light. There is a lamp of 60 cd in the room.
-Scene room_in_the_sun(float thickness) {
+Scene room_in_the_sun() {
+    constexpr float thickness = 0.2F;
     Scene scene;
     const auto material = diffuse(glm::vec3(0.8F));
     const glm::vec3 in_low(-2.0F, 0.0F, -1.5F), in_high(2.0F, 2.5F, 1.5F);
@@ -241,19 +242,18 @@ TEST_CASE_FIXTURE(LightLeakTests, "the sun outside of a room with a lamp adds no
     Configuration configuration = vpl_light(VplPlacement::surfels, VplVisibility::maps);
     configuration.vpls.count = 512;
     configure(configuration);
-    Scene scene = room_in_the_sun(0.2F);
+    Scene scene = room_in_the_sun();
     const Picture in_sun = render(scene, size);
     scene.world.set(scene.light, DirectionalLight{.illuminance = 0.0F});
     const Picture alone = render(scene, size);
     REQUIRE(mean(alone) > 1.0);
-    // Rounding, since other surfels may be chosen: where the light comes from that is seen depends on all of
-    // it.
+    // A hundredth is less than an eye sees. The sun may make the guide choose other surfels.
     CHECK(mean(in_sun) <= 1.01 * mean(alone));
+    std::size_t brighter = 0;
     for (std::size_t i = 0; i < alone.pixels.size(); ++i) {
-        if (in_sun.pixels[i].g <= 1.01F * alone.pixels[i].g) continue;
-        CAPTURE(i);
-        CHECK(in_sun.pixels[i].g <= 1.01F * alone.pixels[i].g);
+        if (in_sun.pixels[i].g > 1.01F * alone.pixels[i].g) ++brighter;
     }
+    CHECK(brighter == 0);
 }
 
 TEST_CASE_FIXTURE(GlFixture, "a scene so far from the origin that rounding shows is warned of once") {

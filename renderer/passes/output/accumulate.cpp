@@ -34,7 +34,7 @@ TextureHandle add_accumulate(FrameGraph& graph, Gpu& gpu, TextureHandle radiance
             const std::uint32_t before = last != nullptr && *last == now ? run.value(averaged) : 0;
             run.set(known, now);
             gpu.draw_fullscreen(program, {{"count", before + 1}},
-                                {.blending = before > 0 ? gl::Blending::mean : gl::Blending::off});
+                                {.blending = before > 0 ? gl::Blending::cover : gl::Blending::off});
         });
         return mean;
     });

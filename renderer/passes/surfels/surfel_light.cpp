@@ -191,10 +191,10 @@ BufferHandle<gpu::DirectPoint> add_direct_light(FrameGraph& graph, Gpu& gpu, con
                                       {Usage::copy, BINDING_LAST_POINTS}),
             .kept = pass.write(growing_buffer<std::uint32_t>(graph, "kept points"),
                                {Usage::copy, BINDING_KEPT_POINTS})};
+        const std::vector<ResourceHandle> others = other_inputs(tracing, sources);
         pass.run([=, &gpu, &lighter, sky = sources.sky](Execution& run) {
             const auto [count, points] = numbers_of(run, surfels);
-            const bool keeps =
-                keep_light(gpu, run, kept, out, cells_of(run, surfels), other_inputs(tracing, sources));
+            const bool keeps = keep_light(gpu, run, kept, out, cells_of(run, surfels), others);
             run.reserve(out, points);
             if (count == 0) return;
             const std::uint32_t emitters = run.value(surfels.counts).emitters;
