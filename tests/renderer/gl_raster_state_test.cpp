@@ -56,7 +56,7 @@ TEST_CASE_FIXTURE(GlFixture, "a state sets what it says") {
                              .culling = Culling::front,
                              .clockwise_front = true});
     CHECK(state_of(gl) == std::vector<GLint>{1, 0, 0, 1, 1, 0, GL_CW, GL_ONE, GL_ONE_MINUS_SRC1_COLOR, GL_ONE,
-                                             GL_ZERO, GL_EQUAL, GL_FRONT, GL_FUNC_ADD});
+                                             GL_ONE_MINUS_SRC1_COLOR, GL_EQUAL, GL_FRONT, GL_FUNC_ADD});
 }
 
 TEST_CASE_FIXTURE(GlFixture, "a state is the same whichever one was set before") {
