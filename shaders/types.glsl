@@ -301,13 +301,13 @@ struct VplConstants {
 struct WideNode {
     vec3 origin;
     uint exponents;
-    uvec3 lower;
-    uint pad0;
-    uvec3 upper;
-    uint pad1;
+    uvec4 lower;
+    uvec4 upper;
     uvec4 children;
 };
 #endif
+
+#define INSTANCE_CHILD 7u  // WideNode: engine/bvh/wide.hpp
 
 // A box of the tree of those in which the scene has changed: renderer/passes/scene/changed_boxes.hpp.
 struct ChangedBox {
@@ -317,11 +317,12 @@ struct ChangedBox {
     uint pad0 DEFAULT(0u);
 };
 
+// In the space of its mesh, unless said otherwise.
 struct TraceTriangle {
     vec3 a;
     uint material;
     vec3 edge_ab;
-    uint id;      // increases in the order of entities and their primitives; with TRIANGLE_MASKED: it may have holes of an alpha mask
+    uint id;      // index in the mesh; with TRIANGLE_MASKED: it may have holes of an alpha mask
     vec3 edge_ac;
     uint colour_a;  // of the vertex: rgb in sRGB, and alpha, 8 bits each
     vec2 uv_a;

@@ -1,6 +1,8 @@
 #pragma once
 
+#include <cstdint>
 #include <limits>
+#include <span>
 
 #include <glm/common.hpp>
 #include <glm/vec3.hpp>
@@ -40,6 +42,11 @@ struct Box {
     return box;
 }
 
+/// Whether a box has no points.
+[[nodiscard]] inline bool is_empty(const Box& box) {
+    return box.lower.x > box.upper.x || box.lower.y > box.upper.y || box.lower.z > box.upper.z;
+}
+
 /// Whether two boxes have points in common, or such that are at most `slack` apart along each axis.
 [[nodiscard]] inline bool meet(const Box& a, const Box& b, float slack) {
     return glm::all(glm::lessThanEqual(a.lower, b.upper + slack)) &&
@@ -51,5 +58,11 @@ struct Box {
     const glm::vec3 size = glm::max(upper - lower, glm::vec3(0.0F));
     return size.x * size.y + size.y * size.z + size.z * size.x;
 }
+
+/// Like build_bvh for triangles, but over boxes, each in a leaf of its own: `order` has the boxes' indices.
+/// There must be at most 2^max_depth boxes.
+[[nodiscard]] Bvh build_box_bvh(std::span<const Box> boxes, std::uint32_t max_depth);
+/// Fits the hierarchy to other boxes: see refit for triangles.
+void refit_box_bvh(Bvh& bvh, std::span<const Box> boxes);
 
 }  // namespace candela

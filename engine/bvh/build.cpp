@@ -6,7 +6,6 @@
 
 #include "engine/bvh/box.hpp"
 #include "engine/bvh/bvh.hpp"
-#include "engine/bvh/two_level.hpp"
 
 namespace candela {
 namespace {

@@ -10,7 +10,7 @@
 
 namespace candela {
 
-/// A triangle in world space (metres), counter-clockwise from its front.
+/// A triangle (metres), in world space unless said otherwise, counter-clockwise from its front.
 struct Triangle {
     glm::vec3 a;
     glm::vec3 b;
@@ -29,6 +29,10 @@ struct BvhNode {
 
 /// Maximum depth of a hierarchy: edges from the root to a leaf. Stacks of `traverse` need this many entries.
 inline constexpr std::uint32_t bvh_max_depth = 48;
+
+/// Of these, those of a mesh's hierarchy and of the top of a scene's: see engine/bvh/wide.hpp.
+inline constexpr std::uint32_t mesh_max_depth = 24;
+inline constexpr std::uint32_t top_max_depth = bvh_max_depth - mesh_max_depth;
 
 /// A hierarchy over triangles that it does not own. Empty (no nodes) for no triangles.
 struct Bvh {

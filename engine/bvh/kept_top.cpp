@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cstddef>
+#include <numeric>
 #include <utility>
 
 namespace candela {
@@ -29,28 +30,24 @@ double cost_of(const BvhNode& node) {
     return half_area(node.lower, node.upper) * static_cast<double>(std::max(node.count, 1U));
 }
 
-/// Half the area of the largest box that build_top has not opened, though it might have been.
-float largest_unopened(const TopBvh& top, std::span<const PlacedBvh> objects) {
-    float largest = 0.0F;
-    for (const TopBvh::Leaf& leaf : top.leaves) {
-        const BvhNode& node = objects[leaf.object].bvh->nodes[leaf.node];
-        if (node.count == 0) largest = std::max(largest, half_area(node.lower, node.upper));
-    }
-    return largest;
-}
-
 }  // namespace
 
-void KeptTop::build(std::span<const PlacedBvh> objects, std::uint32_t most_opened) {
-    top_ = build_top(objects, most_opened);
-    built_cost_ = sah_cost(top_.bvh);
+void KeptTop::build(std::span<const Box> boxes) {
+    std::vector<Box> used;
+    std::vector<std::uint32_t> objects;  // of `used`
+    for (std::uint32_t i = 0; i < boxes.size(); ++i) {
+        if (is_empty(boxes[i])) continue;
+        used.push_back(boxes[i]);
+        objects.push_back(i);
+    }
+    tree_ = build_box_bvh(used, top_max_depth);
+    built_cost_ = sah_cost(tree_);
     cost_ = 0.0;
-    for (const BvhNode& node : top_.bvh.nodes) cost_ += cost_of(node);
-    opened_above_ = largest_unopened(top_, objects);
-    deepest_object_ = 0;
-    for (const PlacedBvh& object : objects) deepest_object_ = std::max(deepest_object_, object.bvh->depth);
-    first_leaf_.assign(objects.size(), none);
-    link_leaves();
+    for (BvhNode& node : tree_.nodes) {
+        cost_ += cost_of(node);
+        if (node.count > 0) node.first = objects[tree_.order[node.first]];
+    }
+    link_nodes(boxes.size());
     must_build_ = false;
     all_changed_ = true;
     first_edit_ += edits_.size() + 1;
@@ -58,13 +55,12 @@ void KeptTop::build(std::span<const PlacedBvh> objects, std::uint32_t most_opene
 }
 
 /// Finds the way from objects to their leaves, and from there up.
-void KeptTop::link_leaves() {
-    const std::vector<BvhNode>& nodes = top_.bvh.nodes;
+void KeptTop::link_nodes(std::size_t objects) {
+    const std::vector<BvhNode>& nodes = tree_.nodes;
+    tree_.order.resize(objects);
+    std::iota(tree_.order.begin(), tree_.order.end(), 0U);
+    node_of_.assign(objects, none);
     parents_.assign(nodes.size() / 2, none);
-    node_of_.assign(top_.leaves.size(), none);
-    place_of_.assign(top_.leaves.size(), none);
-    next_.assign(top_.leaves.size(), none);
-    free_leaves_.clear();
     free_pairs_.clear();
     heights_.assign(nodes.size(), 0);
     for (auto i = static_cast<std::uint32_t>(nodes.size()); i-- > 0;) {  // children before their parents
@@ -72,64 +68,47 @@ void KeptTop::link_leaves() {
             parent(nodes[i].first) = i;
             heights_[i] = 1 + std::max(heights_[nodes[i].first], heights_[nodes[i].first + 1]);
         } else {
-            const std::uint32_t leaf = top_.bvh.order[nodes[i].first];
-            node_of_[leaf] = i;
-            place_of_[leaf] = nodes[i].first;
-            add_leaf(leaf, top_.leaves[leaf].object);
+            node_of_[nodes[i].first] = i;
         }
     }
 }
 
-void KeptTop::add_leaf(std::uint32_t leaf, std::uint32_t object) {
-    if (object >= first_leaf_.size()) first_leaf_.resize(object + std::size_t{1}, none);
-    next_[leaf] = first_leaf_[object];
-    first_leaf_[object] = leaf;
-}
-
-/// `visit` may take the leaf from its object.
-template <class Visit>
-void KeptTop::visit_leaves(std::uint32_t object, Visit visit) const {
-    const bool is_known = object < first_leaf_.size();
-    for (std::uint32_t leaf = is_known ? first_leaf_[object] : none; leaf != none;) {
-        visit(std::exchange(leaf, next_[leaf]));
+void KeptTop::set(std::uint32_t object, const Box& box) {
+    for (auto next = static_cast<std::uint32_t>(node_of_.size()); next <= object; ++next) {
+        node_of_.push_back(none);
+        tree_.order.push_back(next);
     }
-}
-
-void KeptTop::refit(std::span<const PlacedBvh> objects, std::span<const std::uint32_t> changed) {
-    for (const std::uint32_t object : changed) {
-        visit_leaves(object, [&](std::uint32_t leaf) {
-            set_box(node_of_[leaf], box_of(objects[object].bvh->nodes[top_.leaves[leaf].node]));
-            note(Edit::Kind::node, node_of_[leaf]);
-            fit_above(node_of_[leaf]);
-        });
+    const std::uint32_t node = node_of_[object];
+    if (is_empty(box)) {
+        if (node != none) remove(object);
+    } else if (node == none) {
+        insert(object, box);
+    } else {
+        set_box(node, box);
+        note(Edit::Kind::node, node);
+        fit_above(node);
     }
-}
-
-void KeptTop::remove(std::uint32_t object) {
-    visit_leaves(object, [&](std::uint32_t leaf) { remove_leaf(leaf); });
-    if (object < first_leaf_.size()) first_leaf_[object] = none;
 }
 
 /// The other child takes the place of the parent. The root's children stay in the first pair.
-void KeptTop::remove_leaf(std::uint32_t leaf) {
-    const std::uint32_t node = node_of_[leaf];
+void KeptTop::remove(std::uint32_t object) {
+    const std::uint32_t node = std::exchange(node_of_[object], none);
+    note(Edit::Kind::removed, object);
     must_build_ = must_build_ || node == 0;
     if (must_build_) return;
-    note(Edit::Kind::removed_leaf, leaf);
-    free_leaves_.push_back(leaf);
     const std::uint32_t above = parent(node);
     const std::uint32_t other = sibling(node);
-    cost_ -= cost_of(top_.bvh.nodes[node]);
+    cost_ -= cost_of(tree_.nodes[node]);
     if (above != 0) {
-        const std::uint32_t pair = top_.bvh.nodes[above].first;
-        cost_ -= cost_of(top_.bvh.nodes[above]);
+        const std::uint32_t pair = tree_.nodes[above].first;
+        cost_ -= cost_of(tree_.nodes[above]);
         move_node(other, above);
         free_pair(pair);
         note_wide(above);
         fit_above(above);
         return;
     }
-    const BvhNode children = top_.bvh.nodes[other];
+    const BvhNode children = tree_.nodes[other];
     if (children.count > 0) {
         must_build_ = true;
         return;
@@ -145,7 +124,7 @@ void KeptTop::remove_leaf(std::uint32_t leaf) {
 
 /// Where it was is not in use then.
 void KeptTop::move_node(std::uint32_t from, std::uint32_t to) {
-    top_.bvh.nodes[to] = top_.bvh.nodes[from];
+    tree_.nodes[to] = tree_.nodes[from];
     heights_[to] = heights_[from];
     note(Edit::Kind::node, to);
     link(to);
@@ -153,57 +132,49 @@ void KeptTop::move_node(std::uint32_t from, std::uint32_t to) {
 
 /// Makes what refers to a node that has come to this place refer to it there.
 void KeptTop::link(std::uint32_t node) {
-    const BvhNode& here = top_.bvh.nodes[node];
+    const BvhNode& here = tree_.nodes[node];
     if (here.count == 0) {
         parent(here.first) = node;
         note_wide(here.first);
     } else {
-        node_of_[top_.bvh.order[here.first]] = node;
+        node_of_[here.first] = node;
         note_wide(node);
     }
 }
 
-void KeptTop::insert(std::span<const PlacedBvh> objects, std::uint32_t object) {
-    const Bvh& bvh = *objects[object].bvh;
-    if (bvh.nodes.empty()) return;
-    const Box box = box_of(bvh.nodes.front());
-    // Objects of about the size of others need no build of their own.
-    const bool is_large =
-        bvh.nodes.front().count == 0 && half_area(box.lower, box.upper) > 2.0F * opened_above_;
-    if (must_build_ || is_large || top_.bvh.nodes.size() < 3) {
-        must_build_ = true;
-        return;
-    }
-    deepest_object_ = std::max(deepest_object_, bvh.depth);
-    // What a new parent of the node and the object costs, or one of the node and so on below it: what boxes
-    // grow by, and the new one.
-    std::uint32_t at = 0;
+/// The node that becomes the sibling of a new box: that for which boxes grow least, the new parent's included.
+std::uint32_t KeptTop::neighbour_for(const Box& box) const {
+    // What a new parent of the node and the box costs, or one of the node and so on below it.
     const auto below = [&](std::uint32_t child) {
-        const float united = united_area(box_of(top_.bvh.nodes[child]), box);
-        return top_.bvh.nodes[child].count > 0 ? united : united - area(child);
+        const float united = united_area(box_of(tree_.nodes[child]), box);
+        return tree_.nodes[child].count > 0 ? united : united - area(child);
     };
-    while (top_.bvh.nodes[at].count == 0) {
-        const std::uint32_t left = top_.bvh.nodes[at].first;
-        const float united = united_area(box_of(top_.bvh.nodes[at]), box);
+    std::uint32_t at = 0;
+    while (tree_.nodes[at].count == 0) {
+        const std::uint32_t left = tree_.nodes[at].first;
+        const float united = united_area(box_of(tree_.nodes[at]), box);
         const bool goes_left = below(left) <= below(left + 1);
         const float best = goes_left ? below(left) : below(left + 1);
         if (at != 0 && united < united - area(at) + best) break;
         at = goes_left ? left : left + 1;
     }
+    return at;
+}
 
+void KeptTop::insert(std::uint32_t object, const Box& box) {
+    must_build_ = must_build_ || tree_.nodes.size() < 3;
+    if (must_build_) return;
+    const std::uint32_t at = neighbour_for(box);
     const std::uint32_t pair = new_pair();
-    const std::uint32_t leaf = new_leaf();
     note(Edit::Kind::node, at);
     note(Edit::Kind::node, pair + 1);
     parent(pair) = at;
     move_node(at, pair);
-    top_.leaves[leaf] = {object, 0};
-    node_of_[leaf] = pair + 1;
-    add_leaf(leaf, object);
-    top_.bvh.nodes[pair + 1] = {box.lower, place_of_[leaf], box.upper, 1};
+    node_of_[object] = pair + 1;
+    tree_.nodes[pair + 1] = {box.lower, object, box.upper, 1};
     heights_[pair + 1] = 0;
-    cost_ += cost_of(top_.bvh.nodes[pair + 1]) + cost_of(top_.bvh.nodes[pair]) - cost_of(top_.bvh.nodes[at]);
-    top_.bvh.nodes[at] = {glm::vec3(0.0F), pair, glm::vec3(0.0F), 0};
+    cost_ += cost_of(tree_.nodes[pair + 1]) + cost_of(tree_.nodes[pair]) - cost_of(tree_.nodes[at]);
+    tree_.nodes[at] = {glm::vec3(0.0F), pair, glm::vec3(0.0F), 0};
     static_cast<void>(fit_to_children(at));
     note_wide(pair);
     fit_above(at);
@@ -214,15 +185,15 @@ void KeptTop::insert(std::span<const PlacedBvh> objects, std::uint32_t object) {
 /// (Kopta et al., "Fast, Effective BVH Updates for Animated Scenes", 2012). Without it, things that come in
 /// rows would make the tree deep.
 void KeptTop::rotate(std::uint32_t node) {
-    const std::uint32_t left = top_.bvh.nodes[node].first;
+    const std::uint32_t left = tree_.nodes[node].first;
     float gained = 0.0F;
     std::uint32_t up = none;  // the grandchild that becomes a child
     for (const std::uint32_t opened : {left, left + 1}) {
-        if (top_.bvh.nodes[opened].count > 0) continue;
-        const Box other = box_of(top_.bvh.nodes[sibling(opened)]);
-        const std::uint32_t first = top_.bvh.nodes[opened].first;
+        if (tree_.nodes[opened].count > 0) continue;
+        const Box other = box_of(tree_.nodes[sibling(opened)]);
+        const std::uint32_t first = tree_.nodes[opened].first;
         for (const std::uint32_t grandchild : {first, first + 1}) {
-            const Box stays = box_of(top_.bvh.nodes[sibling(grandchild)]);
+            const Box stays = box_of(tree_.nodes[sibling(grandchild)]);
             const float gain = area(opened) - united_area(stays, other);
             if (gain > gained) {
                 gained = gain;
@@ -239,7 +210,7 @@ void KeptTop::rotate(std::uint32_t node) {
 }
 
 void KeptTop::swap_nodes(std::uint32_t a, std::uint32_t b) {
-    std::swap(top_.bvh.nodes[a], top_.bvh.nodes[b]);
+    std::swap(tree_.nodes[a], tree_.nodes[b]);
     std::swap(heights_[a], heights_[b]);
     note(Edit::Kind::node, a);
     note(Edit::Kind::node, b);
@@ -253,40 +224,25 @@ std::uint32_t KeptTop::new_pair() {
         free_pairs_.pop_back();
         return pair;
     }
-    const auto pair = static_cast<std::uint32_t>(top_.bvh.nodes.size());
-    top_.bvh.nodes.resize(pair + std::size_t{2});
-    heights_.resize(top_.bvh.nodes.size());
+    const auto pair = static_cast<std::uint32_t>(tree_.nodes.size());
+    tree_.nodes.resize(pair + std::size_t{2});
+    heights_.resize(tree_.nodes.size());
     parents_.push_back(none);
     return pair;
 }
 
 void KeptTop::free_pair(std::uint32_t first) {
-    top_.bvh.nodes[first] = top_.bvh.nodes[first + 1] = no_node();
+    tree_.nodes[first] = tree_.nodes[first + 1] = no_node();
     parent(first) = none;
     free_pairs_.push_back(first);
 }
 
-std::uint32_t KeptTop::new_leaf() {
-    if (!free_leaves_.empty()) {
-        const std::uint32_t leaf = free_leaves_.back();
-        free_leaves_.pop_back();
-        return leaf;
-    }
-    const auto leaf = static_cast<std::uint32_t>(top_.leaves.size());
-    top_.leaves.push_back({});
-    place_of_.push_back(static_cast<std::uint32_t>(top_.bvh.order.size()));
-    top_.bvh.order.push_back(leaf);
-    node_of_.push_back(none);
-    next_.push_back(none);
-    return leaf;
-}
-
 float KeptTop::area(std::uint32_t node) const {
-    return half_area(top_.bvh.nodes[node].lower, top_.bvh.nodes[node].upper);
+    return half_area(tree_.nodes[node].lower, tree_.nodes[node].upper);
 }
 
 void KeptTop::set_box(std::uint32_t node, const Box& box) {
-    BvhNode& changed = top_.bvh.nodes[node];
+    BvhNode& changed = tree_.nodes[node];
     cost_ -= cost_of(changed);
     changed.lower = box.lower;
     changed.upper = box.upper;
@@ -295,11 +251,11 @@ void KeptTop::set_box(std::uint32_t node, const Box& box) {
 
 /// Returns whether its box or its height has changed.
 bool KeptTop::fit_to_children(std::uint32_t node) {
-    const std::uint32_t left = top_.bvh.nodes[node].first;
-    Box box = box_of(top_.bvh.nodes[left]);
-    box.grow(box_of(top_.bvh.nodes[left + 1]));
+    const std::uint32_t left = tree_.nodes[node].first;
+    Box box = box_of(tree_.nodes[left]);
+    box.grow(box_of(tree_.nodes[left + 1]));
     const std::uint32_t height = 1 + std::max(heights_[left], heights_[left + 1]);
-    if (box == box_of(top_.bvh.nodes[node]) && height == heights_[node]) return false;
+    if (box == box_of(tree_.nodes[node]) && height == heights_[node]) return false;
     heights_[node] = height;
     set_box(node, box);
     return true;
@@ -316,15 +272,15 @@ void KeptTop::fit_above(std::uint32_t node) {
 }
 
 bool KeptTop::is_worn() const {
-    if (must_build_ || top_.bvh.nodes.empty()) return true;
-    if (heights_[0] + deepest_object_ > bvh_max_depth) return true;
+    if (must_build_ || tree_.nodes.empty()) return true;
+    if (heights_[0] > top_max_depth) return true;
     return cost_ > worn_above * built_cost_ * static_cast<double>(area(0));
 }
 
 /// A wide node contains nodes of up to three levels below that which it stands for.
 void KeptTop::note_wide(std::uint32_t node) {
     if (all_changed_) return;
-    is_noted_.resize(top_.bvh.nodes.size() / 2);
+    is_noted_.resize(tree_.nodes.size() / 2);
     for (int level = 0; level < 3 && node != 0; ++level) {
         const std::uint32_t wide = (node - 1) / 2;
         if (!is_noted_[wide]) {
@@ -337,7 +293,7 @@ void KeptTop::note_wide(std::uint32_t node) {
 
 void KeptTop::note(Edit::Kind kind, std::uint32_t index) {
     // Who has to follow more than this looks at all nodes.
-    const std::size_t most = std::max<std::size_t>(1024, top_.bvh.nodes.size());
+    const std::size_t most = std::max<std::size_t>(1024, tree_.nodes.size());
     if (edits_.size() >= most) {
         edits_.erase(edits_.begin(), edits_.begin() + static_cast<std::ptrdiff_t>(most / 2));
         first_edit_ += most / 2;
@@ -352,8 +308,8 @@ std::optional<std::span<const KeptTop::Edit>> KeptTop::edits_since(std::uint64_t
 
 std::optional<std::vector<std::uint32_t>> KeptTop::take_changed() {
     std::vector<std::uint32_t> changed = std::exchange(changed_, {});
-    is_noted_.assign(top_.bvh.nodes.size() / 2, false);
-    if (std::exchange(all_changed_, top_.bvh.nodes.size() < 3)) return std::nullopt;
+    is_noted_.assign(tree_.nodes.size() / 2, false);
+    if (std::exchange(all_changed_, tree_.nodes.size() < 3)) return std::nullopt;
     std::ranges::sort(changed);
     return changed;
 }

@@ -2,7 +2,6 @@
 
 #include "engine/bvh/box.hpp"
 #include "engine/bvh/bvh.hpp"
-#include "engine/bvh/two_level.hpp"
 
 namespace candela {
 

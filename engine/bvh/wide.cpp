@@ -5,6 +5,10 @@
 #include <bit>
 #include <cstddef>
 
+#include <glm/matrix.hpp>
+
+#include "engine/bvh/kept_top.hpp"
+
 namespace candela {
 namespace {
 
@@ -50,13 +54,39 @@ class Steps {
     std::uint32_t exponent_ = 0;
 };
 
-bool is_empty(const Box& box) {
-    return box.lower.x > box.upper.x || box.lower.y > box.upper.y || box.lower.z > box.upper.z;
-}
-
 Box cut_off(const Box& box) {
     constexpr float most = 0x1p126F;
     return {glm::clamp(box.lower, -most, most), glm::clamp(box.upper, -most, most)};
+}
+
+/// The place of the wide node for an inner node, among those of its hierarchy.
+std::uint32_t wide_index(const BvhNode& inner) {
+    return (inner.first - 1) / 2;
+}
+
+/// What one of a mesh's nodes is as a child.
+std::uint32_t word_in_mesh(const BvhNode& node, const MeshPlace& place) {
+    return node.count == 0 ? child_word(place.first_node + wide_index(node), 0)
+                           : child_word(place.first_triangle + node.first, node.count);
+}
+
+/// What one of the top's nodes is as a child.
+std::uint32_t word_in_top(const BvhNode& node, std::uint32_t first_instance) {
+    return node.count == 0 ? child_word(wide_index(node), 0)
+                           : child_word(first_instance + node.first, instance_child);
+}
+
+/// The wide node for the inner node whose children are nodes `first` and `first + 1`. `word_of`: of a node
+/// of the hierarchy, what it is as a child.
+template <class WordOf>
+WideNode widened(const Bvh& bvh, std::uint32_t first, WordOf word_of) {
+    const WideChildren below = wide_children(bvh, first);
+    std::array<WideChild, 4> children;
+    for (std::size_t i = 0; i < below.count; ++i) {
+        const BvhNode& node = bvh.nodes[below.nodes[i]];
+        children[i] = {{node.lower, node.upper}, word_of(node)};
+    }
+    return wide_node(std::span(children).first(below.count));
 }
 
 }  // namespace
@@ -103,19 +133,49 @@ WideChildren wide_children(const Bvh& bvh, std::uint32_t first) {
     return children;
 }
 
-std::vector<WideNode> widen(const Bvh& bvh, std::span<const std::uint32_t> words) {
+std::uint32_t root_word(const Bvh& mesh, const MeshPlace& place) {
+    return word_in_mesh(mesh.nodes.front(), place);
+}
+
+std::vector<WideNode> wide_nodes(const Bvh& mesh, const MeshPlace& place) {
     std::vector<WideNode> wide;
-    wide.reserve(bvh.nodes.size() / 2);
-    for (std::uint32_t first = 1; first < bvh.nodes.size(); first += 2) {
-        const WideChildren below = wide_children(bvh, first);
-        std::array<WideChild, 4> children;
-        for (std::size_t i = 0; i < below.count; ++i) {
-            const BvhNode& node = bvh.nodes[below.nodes[i]];
-            children[i] = {{node.lower, node.upper}, words[below.nodes[i]]};
-        }
-        wide.push_back(wide_node(std::span(children).first(below.count)));
+    wide.reserve(mesh.nodes.size() / 2);
+    for (std::uint32_t first = 1; first < mesh.nodes.size(); first += 2) {
+        wide.push_back(
+            widened(mesh, first, [&](const BvhNode& node) { return word_in_mesh(node, place); }));
     }
     return wide;
+}
+
+WideNode top_node(const Bvh& top, std::uint32_t first_instance, std::uint32_t index) {
+    const std::uint32_t first = 2 * index + 1;
+    if (is_unused(top.nodes[first])) return {};
+    return widened(top, first, [&](const BvhNode& node) { return word_in_top(node, first_instance); });
+}
+
+std::vector<WideNode> top_nodes(const Bvh& top, std::uint32_t first_instance) {
+    if (top.nodes.empty()) return {wide_node({})};
+    if (top.nodes.size() == 1) {
+        const BvhNode& only = top.nodes.front();
+        return {wide_node(std::array{WideChild{{only.lower, only.upper}, word_in_top(only, first_instance)}})};
+    }
+    std::vector<WideNode> wide;
+    wide.reserve(top.nodes.size() / 2);
+    for (std::uint32_t i = 0; i < top.nodes.size() / 2; ++i) wide.push_back(top_node(top, first_instance, i));
+    return wide;
+}
+
+WideNode instance_node(const glm::mat4& mesh_from_world, std::uint32_t root, std::uint32_t entity) {
+    const glm::mat4 rows = glm::transpose(mesh_from_world);
+    const auto bits = [](float value) { return std::bit_cast<std::uint32_t>(value); };
+    const auto row = [&](glm::length_t i) {
+        return glm::uvec4(bits(rows[i].x), bits(rows[i].y), bits(rows[i].z), bits(rows[i].w));
+    };
+    return {.origin = glm::vec3(rows[0]),
+            .exponents = bits(rows[0].w),
+            .lower = row(1),
+            .upper = row(2),
+            .children = {root, entity, 0, 0}};
 }
 
 }  // namespace candela

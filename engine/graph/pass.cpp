@@ -21,7 +21,7 @@ bool allowed(ResourceKind kind, Usage usage, bool write) {
         case Usage::copy:
             return true;
         case Usage::sampled:
-            return texture && !write;
+            return !write;
         case Usage::uniform:
         case Usage::vertex:
         case Usage::index:

@@ -60,6 +60,7 @@ Limits get_limits(const Functions& gl, std::string_view renderer, bool anisotrop
     if (limits.software) limits.loop_iterations = 65'535;  // Mesa's LP_MAX_TGSI_LOOP_ITERATIONS
     limits.texture_size = get_unsigned(gl, GL_MAX_TEXTURE_SIZE);
     limits.texture_layers = get_unsigned(gl, GL_MAX_ARRAY_TEXTURE_LAYERS);
+    limits.buffer_texels = get_unsigned(gl, GL_MAX_TEXTURE_BUFFER_SIZE);
     limits.storage_blocks = std::min({get_unsigned(gl, GL_MAX_COMPUTE_SHADER_STORAGE_BLOCKS),
                                       get_unsigned(gl, GL_MAX_FRAGMENT_SHADER_STORAGE_BLOCKS),
                                       get_unsigned(gl, GL_MAX_COMBINED_SHADER_STORAGE_BLOCKS)});

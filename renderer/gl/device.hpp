@@ -35,6 +35,7 @@ struct ObjectCounts {
 struct Limits {
     std::uint32_t texture_size = 0;            ///< texels along an edge of a 2D texture
     std::uint32_t texture_layers = 0;          ///< layers of an array texture
+    std::uint32_t buffer_texels = 0;           ///< texels of a buffer that shaders fetch
     std::uint32_t storage_blocks = 0;          ///< of a program: the least of what its stages allow
     std::uint32_t drawing_storage_blocks = 0;  ///< of a vertex or geometry shader: the lesser
     std::uint32_t storage_bindings = 0;        ///< binding points of storage blocks

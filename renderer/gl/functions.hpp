@@ -73,6 +73,7 @@
     X(GetNamedBufferParameteri64v, GETNAMEDBUFFERPARAMETERI64V) \
     /* textures */ \
     X(CreateTextures, CREATETEXTURES) \
+    X(TextureBuffer, TEXTUREBUFFER) \
     X(GenTextures, GENTEXTURES) \
     X(TextureView, TEXTUREVIEW) \
     X(DeleteTextures, DELETETEXTURES) \

@@ -52,7 +52,7 @@ ObjectId GraphBackend::create_buffer(std::string_view name, const BufferDesc& de
     if (clears_new_) {
         device_->gl().ClearNamedBufferData(id, GL_R32UI, GL_RED_INTEGER, GL_UNSIGNED_INT, nullptr);
     }
-    buffers_.emplace(id, std::move(buffer));
+    buffers_.emplace(id, GraphBuffer{std::string(name), std::move(buffer)});
     return id;
 }
 
@@ -116,6 +116,12 @@ void GraphBackend::bind_buffer(ObjectId buffer, Binding binding) {
         gl.BindBuffer(GL_DISPATCH_INDIRECT_BUFFER, buffer);
         return;
     }
+    if (binding.usage == Usage::sampled) {
+        GraphBuffer& read = buffers_.at(buffer);
+        if (!read.texels) read.texels = BufferTexels(*device_, read.name, read.buffer);
+        gl.BindTextureUnit(binding.point, read.texels.name());
+        return;
+    }
     const GLenum target = binding.usage == Usage::uniform ? GL_UNIFORM_BUFFER : GL_SHADER_STORAGE_BUFFER;
     gl.BindBufferBase(target, binding.point, buffer);
 }
@@ -132,7 +138,7 @@ std::uint64_t GraphBackend::texture_digest(ObjectId texture) {
 }
 
 std::uint64_t GraphBackend::buffer_digest(ObjectId buffer) {
-    return digest_of(buffers_.at(buffer).download<std::byte>(), golden);
+    return digest_of(buffers_.at(buffer).buffer.download<std::byte>(), golden);
 }
 
 void GraphBackend::bind_targets(const PassTargets& targets) {

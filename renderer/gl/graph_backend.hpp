@@ -53,12 +53,17 @@ class GraphBackend final : public Backend {
 
     /// For reports and tests: the object of an id that this back end returned. Throws std::out_of_range for
     /// other ids.
-    [[nodiscard]] const Buffer& buffer(ObjectId id) const { return buffers_.at(id); }
+    [[nodiscard]] const Buffer& buffer(ObjectId id) const { return buffers_.at(id).buffer; }
     [[nodiscard]] const Texture& texture(ObjectId id) const { return textures_.at(id); }
 
  private:
     /// GL names of the attachments: the colours, then depth (0: none).
     using Attachments = std::vector<ObjectId>;
+    struct GraphBuffer {
+        std::string name;
+        Buffer buffer;
+        BufferTexels texels{};  ///< made when they are first bound
+    };
     void bind_targets(const PassTargets& targets);
 
     Device* device_;
@@ -68,7 +73,7 @@ class GraphBackend final : public Backend {
     bool clears_new_ = false;
     std::optional<std::set<std::string, std::less<>>> host_passes_{std::in_place};  // none: all
     std::unordered_map<ObjectId, Texture> textures_;
-    std::unordered_map<ObjectId, Buffer> buffers_;
+    std::unordered_map<ObjectId, GraphBuffer> buffers_;
     std::map<Attachments, Framebuffer> framebuffers_;
     Framebuffer* targets_ = nullptr;  // of the running pass; null without attachments
     std::uint32_t drawn_colours_ = 0;

@@ -24,10 +24,11 @@ struct TextureTarget {
     GLenum target;
     GLenum binding;
 };
-constexpr std::array<TextureTarget, 3> texture_targets{
+constexpr std::array<TextureTarget, 4> texture_targets{
     {{GL_TEXTURE_2D, GL_TEXTURE_BINDING_2D},
      {GL_TEXTURE_2D_ARRAY, GL_TEXTURE_BINDING_2D_ARRAY},
-     {GL_TEXTURE_CUBE_MAP_ARRAY, GL_TEXTURE_BINDING_CUBE_MAP_ARRAY}}};
+     {GL_TEXTURE_CUBE_MAP_ARRAY, GL_TEXTURE_BINDING_CUBE_MAP_ARRAY},
+     {GL_TEXTURE_BUFFER, GL_TEXTURE_BINDING_BUFFER}}};
 
 /// A target of indexed buffers, with the queries for what is bound there.
 struct IndexedTarget {

@@ -146,6 +146,16 @@ Buffer::Buffer(Device& device, std::string_view label, std::uint64_t size)
     set_bytes(size);
 }
 
+BufferTexels::BufferTexels(Device& device, std::string_view label, const Buffer& buffer)
+    : Object(device, ObjectKind::texture, create(device.gl().CreateTextures, GL_TEXTURE_BUFFER), label) {
+    const std::uint64_t texels = buffer.bytes() / sizeof(glm::uvec4);
+    if (texels > device.limits().buffer_texels) {
+        throw MemoryError(fmt::format("buffer \"{}\": {} texels, of which shaders of this driver reach {}",
+                                      label, texels, device.limits().buffer_texels));
+    }
+    gl().TextureBuffer(name(), GL_RGBA32UI, buffer.name());
+}
+
 void Buffer::bind_base(GLenum target, GLuint index) const {
     gl().BindBufferBase(target, index, name());
 }

@@ -50,6 +50,6 @@ struct DrawCommand {
     bool operator==(const DrawCommand&) const = default;
 };
 
-static_assert(BVH_STACK_SIZE >= wide_stack_size);
+static_assert(BVH_STACK_SIZE >= wide_stack_size && INSTANCE_CHILD == instance_child);
 
 }  // namespace candela::gpu

@@ -26,7 +26,7 @@
 #include "engine/bvh/box.hpp"
 #include "engine/bvh/bvh.hpp"
 #include "engine/bvh/traverse.hpp"
-#include "engine/bvh/two_level.hpp"
+#include "engine/bvh/box.hpp"
 #include "engine/bvh/wide.hpp"
 #include "engine/scene/check.hpp"
 

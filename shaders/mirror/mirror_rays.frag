@@ -118,12 +118,11 @@ void put_no_material() {
 #endif
 }
 
-void meet(Hit hit, vec3 direction) {
-    TraceTriangle triangle = triangles[hit.triangle];
-    vec3 front = normalize(cross(triangle.edge_ab, triangle.edge_ac));
-    bool from_front = dot(front, direction) < 0.0;
-    width_and_position.yzw = triangle.a + hit.barycentric.x * triangle.edge_ab + hit.barycentric.y * triangle.edge_ac;
-    vec3 across = hit_normal(triangle, hit.barycentric);
+void meet(Hit hit, vec3 origin, vec3 direction) {
+    TraceTriangle triangle = triangle_at(hit.triangle);
+    bool from_front = dot(front_of(hit), direction) < 0.0;
+    width_and_position.yzw = origin + hit.t * direction;
+    vec3 across = normalize(to_world(hit, hit_normal(triangle, hit.barycentric)));
     float side = from_front ? 1.0 : -1.0;
     normal_and_direction = vec4(octahedral_encode(side * across), octahedral_encode(-direction));
     put_no_material();
@@ -133,7 +132,7 @@ void meet(Hit hit, vec3 direction) {
     albedo.rgb = hit_colour(triangle, hit.barycentric).rgb;
     float spread = 0.0;
 #ifdef MIRRORED_BUMPS
-    vec3 turned = met_normal(material, with_uv_of(MATERIAL_SECOND_UV_NORMAL, hit.triangle), hit.barycentric, across, spread);
+    vec3 turned = met_normal(material, with_uv_of(MATERIAL_SECOND_UV_NORMAL, hit.triangle), hit, across, spread);
     PackedBumps packed_bumps = pack_bumps(side * turned, 1.0);
     bumps = vec4(packed_bumps.normal, packed_bumps.open, 0.0);
 #endif
@@ -164,6 +163,6 @@ void main() {
     albedo.a = aimed_radiance(ray.aim, hit);
 #endif
     if (hit.triangle == NO_TRIANGLE) return;
-    meet(hit, direction);
+    meet(hit, origin, direction);
     width_and_position.x = width_behind(surface, hit.t);
 }

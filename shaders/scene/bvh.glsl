@@ -1,18 +1,38 @@
-// Traversal of the bounding-volume hierarchy, which has up to four children a node: engine/bvh/wide.hpp. Rays pass
-// through the holes of alpha masks.
+// Traversal of the bounding-volume hierarchy over instances of meshes, which has up to four children a node:
+// engine/bvh/wide.hpp. Rays are in world space; they pass through the holes of alpha masks.
 #include "bindings.glsl"
 #include "maths.glsl"
 #include "scene/materials.glsl"
 #include "types.glsl"
 
-layout(std430, binding = BINDING_BVH_NODES) readonly restrict buffer BvhNodes { WideNode bvh_nodes[]; };
-layout(std430, binding = BINDING_TRIANGLES) readonly restrict buffer Triangles { TraceTriangle triangles[]; };
+layout(binding = UNIT_BVH_NODES) uniform usamplerBuffer node_texels;
+layout(binding = UNIT_TRIANGLES) uniform usamplerBuffer triangle_texels;
+
+WideNode node_at(uint index) {
+    int first = 4 * int(index);
+    uvec4 words = texelFetch(node_texels, first);
+    return WideNode(uintBitsToFloat(words.xyz), words.w, texelFetch(node_texels, first + 1), texelFetch(node_texels, first + 2),
+                    texelFetch(node_texels, first + 3));
+}
+
+TraceTriangle triangle_at(uint index) {
+    uvec4 words[6];
+    for (int i = 0; i < 6; ++i) {
+        words[i] = texelFetch(triangle_texels, 6 * int(index) + i);
+    }
+    return TraceTriangle(uintBitsToFloat(words[0].xyz), words[0].w, uintBitsToFloat(words[1].xyz), words[1].w,
+                         uintBitsToFloat(words[2].xyz), words[2].w, uintBitsToFloat(words[3].xy),
+                         uintBitsToFloat(words[3].zw), uintBitsToFloat(words[4].xy), words[4].z, words[4].w, words[5].x,
+                         words[5].y, words[5].z, words[5].w);
+}
 
 struct Hit {
     float t;
     vec2 barycentric;  // weights of b and c
     uint triangle;     // in the triangle buffer
     uint id;           // of the triangle
+    uint instance;     // node
+    uint entity;       // index, of the instance
 };
 
 const uint NO_TRIANGLE = 0xffffffffu;
@@ -37,23 +57,47 @@ vec3 safe_inverse(vec3 direction) {
     return 1.0 / safe;
 }
 
+// A ray in the space of a mesh, or of the world. The distance along it is the same in all spaces.
+struct LocalRay {
+    vec3 origin;
+    vec3 direction;
+    vec3 inverse;   // of the direction
+    uint instance;  // node; 0: none, in world space
+    uint entity;    // index, of the instance
+};
+
+// The rows of the matrix that leads from the world to an instance's mesh.
+vec4[3] mesh_from_world(WideNode instance) {
+    return vec4[3](vec4(instance.origin, uintBitsToFloat(instance.exponents)), uintBitsToFloat(instance.lower),
+                   uintBitsToFloat(instance.upper));
+}
+
+// A normal of the triangle that was hit, in world space, of another length.
+vec3 to_world(Hit hit, vec3 normal) {
+    vec4 rows[3] = mesh_from_world(node_at(hit.instance));
+    return normal.x * rows[0].xyz + normal.y * rows[1].xyz + normal.z * rows[2].xyz;
+}
+
+vec3 to_mesh(vec4 rows[3], vec4 place) { return vec3(dot(rows[0], place), dot(rows[1], place), dot(rows[2], place)); }
+
 // Two-sided test of Möller and Trumbore (1997). Returns whether the triangle is hit before `hit`, or at equal distance
-// has the lower id; then it becomes the hit.
-bool intersect_triangle(uint index, vec3 origin, vec3 direction, float t_min, inout Hit hit) {
-    TraceTriangle triangle = triangles[index];
-    vec3 p = cross(direction, triangle.edge_ac);
+// is that of the entity with the lower index, or of the same one with the lower id; then it becomes the hit.
+bool intersect_triangle(uint index, LocalRay ray, float t_min, inout Hit hit) {
+    TraceTriangle triangle = triangle_at(index);
+    vec3 p = cross(ray.direction, triangle.edge_ac);
     float determinant = dot(triangle.edge_ab, p);
     if (determinant == 0.0) return false;
     float inverse = 1.0 / determinant;
-    vec3 s = origin - triangle.a;
+    vec3 s = ray.origin - triangle.a;
     float u = dot(s, p) * inverse;
     vec3 q = cross(s, triangle.edge_ab);
-    float v = dot(direction, q) * inverse;
+    float v = dot(ray.direction, q) * inverse;
     float t = dot(triangle.edge_ac, q) * inverse;
     bool inside = u >= 0.0 && v >= 0.0 && u + v <= 1.0 && t > t_min;
-    bool nearer = t < hit.t || (t == hit.t && triangle.id < hit.id);
+    bool comes_first = ray.entity < hit.entity || (ray.entity == hit.entity && triangle.id < hit.id);
+    bool nearer = t < hit.t || (t == hit.t && comes_first);
     if (!inside || !nearer) return false;
-    hit = Hit(t, vec2(u, v), index, triangle.id);
+    hit = Hit(t, vec2(u, v), index, triangle.id, ray.instance, ray.entity);
     return true;
 }
 
@@ -97,12 +141,14 @@ void put_farthest_first(inout vec4 t, inout uvec4 child) {
 
 // A triangle hit at t in (t_min, t_max), from either side: the nearest one, or with `any` the first one found.
 Hit trace(vec3 origin, vec3 direction, float t_min, float t_max, bool any) {
-    Hit hit = Hit(t_max, vec2(0.0), NO_TRIANGLE, 0u);
-    vec3 inverse_direction = safe_inverse(direction);
+    Hit hit = Hit(t_max, vec2(0.0), NO_TRIANGLE, 0u, 0u, 0u);
+    LocalRay in_world = LocalRay(origin, direction, safe_inverse(direction), 0u, 0u);
+    LocalRay ray = in_world;
     uint stack[BVH_STACK_SIZE];  // children to visit: see WideNode. At first the root.
     stack[0] = 0u;
     uint depth = 1u;
-    uint next = 0u;  // of the triangles in the current leaf
+    uint outside = 0u;  // children on the stack that are not of the instance that the ray is in
+    uint next = 0u;     // of the triangles in the current leaf
     uint end = 0u;
     while (depth > 0u || next < end) {
         // Goes on until a triangle is hit, if it may have a hole there, or if any hit will do. Whether there is a hole is
@@ -112,24 +158,39 @@ Hit trace(vec3 origin, vec3 direction, float t_min, float t_max, bool any) {
         while (!stop && (depth > 0u || next < end)) {
             while (depth > 0u && next == end) {
                 uint child = stack[--depth];
+                if (depth < outside) {
+                    ray = in_world;
+                    outside = 0u;
+                }
+                // A loop of one iteration, which such drivers leave out where no ray enters an instance.
+                while ((child & 7u) == INSTANCE_CHILD) {
+                    uint instance = child >> 3u;
+                    WideNode node = node_at(instance);
+                    vec4 rows[3] = mesh_from_world(node);
+                    vec3 inside = to_mesh(rows, vec4(direction, 0.0));
+                    ray = LocalRay(to_mesh(rows, vec4(origin, 1.0)), inside, safe_inverse(inside), instance, node.children.y);
+                    outside = depth;
+                    child = node.children.x;
+                }
                 next = child >> 3u;
                 end = next + (child & 7u);
                 if (next < end) continue;
-                WideNode node = bvh_nodes[next];
-                vec4 t = enter_children(node, origin, inverse_direction, t_min, hit.t);
+                WideNode node = node_at(next);
+                vec4 t = enter_children(node, ray.origin, ray.inverse, t_min, hit.t);
                 if (!any) put_farthest_first(t, node.children);
                 for (int i = 0; i < 4; ++i) {
                     if (t[i] != MISSED) stack[depth++] = node.children[i];
                 }
             }
             while (!stop && next < end) {
-                if (!intersect_triangle(next++, origin, direction, t_min, found)) continue;
+                if (!intersect_triangle(next++, ray, t_min, found)) continue;
                 bool masked = (found.id & TRIANGLE_MASKED) != 0u;
                 if (!masked) hit = found;
                 stop = masked || any;
             }
         }
-        if (found.triangle != hit.triangle && !is_hole(triangles[found.triangle], found.barycentric)) hit = found;
+        bool other = found.triangle != hit.triangle || found.instance != hit.instance;
+        if (other && !is_hole(triangle_at(found.triangle), found.barycentric)) hit = found;
         if (any && hit.triangle != NO_TRIANGLE) return hit;
     }
     return hit;
@@ -145,9 +206,14 @@ bool any_hit(vec3 origin, vec3 direction, float t_min, float t_max) {
     return trace(origin, direction, t_min, t_max, true).triangle != NO_TRIANGLE;
 }
 
+// Normal of the front where the ray has hit a triangle, of any length; world space.
+vec3 front_of(Hit hit) {
+    TraceTriangle triangle = triangle_at(hit.triangle);
+    return to_world(hit, cross(triangle.edge_ab, triangle.edge_ac));
+}
+
 // Whether the ray has hit a surface from a side that reflects.
 bool is_surface(Hit hit, vec3 direction) {
     if (hit.triangle == NO_TRIANGLE) return false;
-    TraceTriangle triangle = triangles[hit.triangle];
-    return is_double_sided(triangle.material) || dot(cross(triangle.edge_ab, triangle.edge_ac), direction) < 0.0;
+    return is_double_sided(triangle_at(hit.triangle).material) || dot(front_of(hit), direction) < 0.0;
 }

@@ -27,8 +27,7 @@ bool is_outdated_along(MapTask task, vec3 origin, vec3 direction) {
 
 // Normal of the triangle, on the side that the ray meets.
 vec3 met_normal(Hit hit, vec3 direction) {
-    TraceTriangle triangle = triangles[hit.triangle];
-    vec3 front = cross(triangle.edge_ab, triangle.edge_ac);
+    vec3 front = front_of(hit);
     return dot(front, direction) < 0.0 ? front : -front;
 }
 

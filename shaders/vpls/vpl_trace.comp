@@ -24,13 +24,12 @@ struct Ray {
 VplRecord follow(Ray ray, vec3 throughput) {
     Hit hit = closest_hit(ray.origin, ray.direction, 0.0, INFINITY);
     if (hit.triangle == NO_TRIANGLE) return VplRecord(ray.origin, VPL_ESCAPED, ray.direction, 0.0, vec3(0.0), 0.0);
-    TraceTriangle triangle = triangles[hit.triangle];
-    vec3 front = normalize(cross(triangle.edge_ab, triangle.edge_ac));
+    TraceTriangle triangle = triangle_at(hit.triangle);
+    vec3 front = normalize(front_of(hit));
     bool from_front = dot(front, ray.direction) < 0.0;
     vec3 normal = from_front ? front : -front;
     vec3 albedo = from_front || is_double_sided(triangle.material) ? traced_albedo(materials[triangle.material], hit_colour(triangle, hit.barycentric).rgb) : vec3(0.0);
-    vec3 position = triangle.a + hit.barycentric.x * triangle.edge_ab + hit.barycentric.y * triangle.edge_ac;
-    return VplRecord(position, VPL_PLACED, normal, 0.0, throughput * albedo, 0.0);
+    return VplRecord(ray.origin + hit.t * ray.direction, VPL_PLACED, normal, 0.0, throughput * albedo, 0.0);
 }
 
 // First segment of a path, from the light; `u` in [0, 1)².

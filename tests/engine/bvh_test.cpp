@@ -14,7 +14,6 @@
 #include <rapidcheck.h>
 #include <glm/geometric.hpp>
 
-#include "engine/bvh/two_level.hpp"
 #include "tests/engine/random_triangles.hpp"
 #include "tests/seed.hpp"
 

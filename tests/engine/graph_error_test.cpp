@@ -157,7 +157,7 @@ TEST_CASE("graph error: each usage that reads or writes of textures or buffers d
         CHECK(bad(desc, [&](Pass& pass, auto texture, auto) { (void)pass.write(texture, usage); }) !=
               one_of(usage, {storage, colour_target, depth_target, layer_target, copy}));
         CHECK(bad(desc, [&](Pass& pass, auto, auto buffer) { pass.read(buffer, usage); }) !=
-              one_of(usage, {storage, uniform, vertex, index, indirect, copy}));
+              one_of(usage, {sampled, storage, uniform, vertex, index, indirect, copy}));
         CHECK(bad(desc, [&](Pass& pass, auto, auto buffer) { (void)pass.write(buffer, usage); }) !=
               one_of(usage, {storage, copy}));
     }

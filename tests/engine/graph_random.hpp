@@ -80,7 +80,7 @@ inline Usage one_of(const std::vector<Usage>& usages) {
 inline Usage read_usage(ResourceKind kind) {
     using enum Usage;
     return kind == ResourceKind::texture ? one_of({sampled, storage, copy})
-                                         : one_of({storage, uniform, vertex, index, indirect, copy});
+                                         : one_of({sampled, storage, uniform, vertex, index, indirect, copy});
 }
 inline Usage write_usage(ResourceKind kind) {
     using enum Usage;

@@ -110,6 +110,10 @@ void traverse_wide(const Wide& wide, Enters enters, Visit visit) {
         waiting.pop_back();
         const std::uint32_t first = word >> 3U;
         const std::uint32_t count = word & 7U;
+        if (count == instance_child) {  // of a mesh in world space
+            waiting.push_back({wide.nodes.at(first).children.x, box});
+            continue;
+        }
         for (std::uint32_t i = first; i < first + count; ++i) {
             visit(wide.order.at(i), box);
         }

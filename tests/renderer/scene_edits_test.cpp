@@ -69,8 +69,7 @@ TEST_CASE_FIXTURE(GlFixture, "only what comes or moves is uploaded") {
     const std::uint64_t all = uploaded();
     CHECK(all > 60'000 * (sizeof(Vertex) + 4) + 20'000 * 96);
 
-    // A box of 12 triangles, and tables that do not depend on the number of triangles: of them, the top
-    // of the hierarchy has the most, at least 2 · 1,024 nodes of 32 bytes.
+    // A box of 12 triangles, and tables that do not depend on the number of triangles.
     constexpr std::uint64_t little = 100'000;
     static_assert(little < 60'000 * sizeof(Vertex) / 20);
     const Entity box =
@@ -210,8 +209,8 @@ TEST_CASE_FIXTURE(PathFixture,
 }
 
 TEST_CASE_FIXTURE(PathFixture, "a hierarchy that is built again after a move may be larger than it was") {
-    // The hierarchy over all things first has many parts of a large mesh. Small things take their places, a
-    // few at a time. When all of them move, it is built again, with parts of the small ones, too.
+    // A few things come at a time, seven times as many as were there. When all of them move, the hierarchy
+    // over them is built again.
     Scene scene = lit_ground();
     const Entity large = add(scene.world, at({0, 1, 0}), MeshInstance{soup(3000, 5)});
     const MeshInstance small{box_inwards(0.02F, diffuse({0.8F, 0.4F, 0.2F}))};

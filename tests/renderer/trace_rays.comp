@@ -11,7 +11,16 @@ struct TestRay {
 };
 
 layout(std430, binding = BINDING_LAST + 1) readonly restrict buffer Rays { TestRay rays[]; };
-layout(std430, binding = BINDING_LAST + 2) writeonly restrict buffer Hits { vec2 hits[]; };
+struct TestHit {
+    vec3 front;  // of any length
+    float t;
+    uint triangle;  // index
+    uint instance;  // node
+    uint pad0;
+    uint pad1;
+};
+
+layout(std430, binding = BINDING_LAST + 2) writeonly restrict buffer Hits { TestHit hits[]; };
 
 uniform uint ray_count;
 
@@ -19,5 +28,6 @@ void main() {
     uint i = gl_GlobalInvocationID.x;
     if (i >= ray_count) return;
     Hit hit = closest_hit(rays[i].origin, rays[i].direction, 0.0, rays[i].t_max);
-    hits[i] = vec2(hit.t, uintBitsToFloat(hit.triangle));
+    vec3 front = hit.triangle == NO_TRIANGLE ? vec3(0.0) : front_of(hit);
+    hits[i] = TestHit(front, hit.t, hit.triangle, hit.instance, 0u, 0u);
 }

@@ -134,63 +134,56 @@ class Objects {
     explicit Objects(Random& random) : random_(&random) {}
 
     void add() {
-        objects_.push_back(std::make_unique<Object>());
-        place(size() - 1);
-        top.insert(placed(), size() - 1);
+        objects_.emplace_back();
+        move(size() - 1);
     }
     /// The last one takes its number.
     void remove(std::uint32_t object) {
         const std::uint32_t last = size() - 1;
-        top.remove(object);
-        top.remove(last);
-        std::swap(objects_[object], objects_[last]);
+        top.set(object, {});
+        top.set(last, {});
+        objects_[object] = objects_[last];
         objects_.pop_back();
-        if (object < last) top.insert(placed(), object);
+        if (object < last) top.set(object, box_of(object));
     }
     void move(std::uint32_t object) {
         place(object);
-        top.refit(placed(), std::array{object});
+        top.set(object, box_of(object));
     }
-    /// Without opening any object: with so few, all that come would be built for.
     void build_if_worn() {
         if (!top.is_worn()) return;
-        top.build(placed(), 0);
+        std::vector<Box> boxes;
+        for (std::uint32_t i = 0; i < size(); ++i) boxes.push_back(box_of(i));
+        top.build(boxes);
         ++built;
     }
 
     [[nodiscard]] std::uint32_t size() const { return static_cast<std::uint32_t>(objects_.size()); }
     [[nodiscard]] const std::vector<Triangle>& triangles(std::uint32_t object) const {
-        return objects_[object]->triangles;
+        return objects_[object];
     }
 
     KeptTop top;
     int built = 0;
 
  private:
-    struct Object {
-        std::vector<Triangle> triangles;
-        Bvh bvh;
-    };
-
     void place(std::uint32_t object) {
-        Object& changed = *objects_[object];
+        std::vector<Triangle>& changed = objects_[object];
         const glm::vec3 centre = random_->vector(12.0F);
-        changed.triangles.resize(6);
-        for (Triangle& t : changed.triangles) {
+        changed.resize(6);
+        for (Triangle& t : changed) {
             t = {centre + random_->vector(1.0F), centre + random_->vector(1.0F),
                  centre + random_->vector(1.0F)};
         }
-        if (changed.bvh.nodes.empty()) changed.bvh = build_bvh(changed.triangles);
-        refit(changed.bvh, changed.triangles);
     }
-    [[nodiscard]] std::vector<PlacedBvh> placed() const {
-        std::vector<PlacedBvh> all;
-        for (const auto& object : objects_) all.push_back({&object->bvh, 0, 0});
-        return all;
+    [[nodiscard]] Box box_of(std::uint32_t object) const {
+        Box box;
+        for (const Triangle& t : objects_[object]) box.grow(bounds(t));
+        return box;
     }
 
     Random* random_;
-    std::vector<std::unique_ptr<Object>> objects_;
+    std::vector<std::vector<Triangle>> objects_;
 };
 
 bool has_corner_in_view(const std::vector<Triangle>& triangles, const glm::mat4& clip_from_world) {

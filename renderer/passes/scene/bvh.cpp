@@ -16,10 +16,11 @@
 namespace candela {
 namespace {
 
-/// The hierarchy, and where its parts lie in the buffers: the nodes of the top come first.
+/// The hierarchy, and where its parts lie in the buffers: the nodes of the top come first, then the instances,
+/// by object, then the nodes of meshes.
 struct UploadedHierarchy {
     SceneHierarchy scene;
-    std::uint32_t top_room = 0;  // nodes
+    std::uint32_t room = 0;  // of the top, and of the instances: nodes
     RangePlaces nodes;
     RangePlaces triangles;
 };
@@ -29,28 +30,34 @@ struct HierarchyBuffers {
     BufferHandle<gpu::TraceTriangle> triangles;
 };
 
-using Objects = std::vector<std::unique_ptr<ObjectHierarchy>>;
-
-std::vector<BufferRange*> ranges_of(const Objects& objects, std::span<const std::uint32_t> which,
-                                    BufferRange ObjectHierarchy::*range) {
+std::vector<BufferRange*> ranges_of(const std::vector<MeshHierarchy*>& meshes,
+                                    BufferRange MeshHierarchy::*range) {
     std::vector<BufferRange*> ranges;
-    ranges.reserve(which.size());
-    for (const std::uint32_t i : which) ranges.push_back(&(*objects[i].*range));
+    ranges.reserve(meshes.size());
+    for (MeshHierarchy* const mesh : meshes) ranges.push_back(&(mesh->*range));
     return ranges;
 }
 
-/// How many wide nodes the top has.
-std::uint32_t top_size_of(const SceneHierarchy& scene) {
-    return std::max(static_cast<std::uint32_t>(scene.top.top().bvh.nodes.size() / 2), 1U);
-}
-
 std::vector<std::uint32_t> all_objects(const SceneHierarchy& scene) {
-    const Objects& objects = scene.objects;
     std::vector<std::uint32_t> all;
-    for (std::uint32_t i = 0; i < objects.size(); ++i) {
-        if (objects[i]) all.push_back(i);
+    for (std::uint32_t i = 0; i < scene.objects.size(); ++i) {
+        if (scene.objects[i]) all.push_back(i);
     }
     return all;
+}
+
+/// Ensures that the first nodes have room for the top and the instances. Returns whether they had too little:
+/// all other nodes then have no place.
+bool make_room(UploadedHierarchy& uploaded) {
+    // Of n objects, the top has n - 1 wide nodes, but at least one.
+    const auto objects = static_cast<std::uint32_t>(uploaded.scene.objects.size());
+    if (uploaded.room > 0 && objects <= uploaded.room) return false;
+    uploaded.room = objects + objects / 4 + 64;
+    uploaded.nodes.clear(2 * uploaded.room);
+    for (MeshHierarchy* const mesh : uploaded.scene.meshes_of(all_objects(uploaded.scene))) {
+        mesh->nodes = {.count = mesh->nodes.count};
+    }
+    return true;
 }
 
 /// Frees the places in the buffers of what is gone, and gives places to what has none. Returns whether any
@@ -61,49 +68,38 @@ bool place(Execution& run, const HierarchyBuffers& buffers, UploadedHierarchy& u
     for (BufferRange& range : freed.nodes) uploaded.nodes.take_back(range);
     for (BufferRange& range : freed.triangles) uploaded.triangles.take_back(range);
 
-    const auto every = [&](BufferRange ObjectHierarchy::*range) {
-        return ranges_of(scene.objects, all_objects(scene), range);
+    const auto all = [&](BufferRange MeshHierarchy::*range) {
+        return ranges_of(scene.meshes_of(all_objects(scene)), range);
     };
-    const bool moved_triangles =
-        place_ranges(run, buffers.triangles, uploaded.triangles,
-                     ranges_of(scene.objects, scene.changed(), &ObjectHierarchy::triangles),
-                     [&] { return every(&ObjectHierarchy::triangles); });
-    std::vector<BufferRange*> nodes = ranges_of(scene.objects, scene.changed(), &ObjectHierarchy::nodes);
-    const std::uint32_t top_size = top_size_of(scene);
-    const bool other_top = top_size > uploaded.top_room;
-    if (other_top) {
-        uploaded.top_room = top_size + top_size / 4;
-        uploaded.nodes.clear(uploaded.top_room);
-        nodes = every(&ObjectHierarchy::nodes);
-        for (BufferRange* range : nodes) *range = {.count = range->count};
-    }
+    const bool no_room = make_room(uploaded);
+    const auto which = no_room ? all_objects(scene) : scene.changed();
+    const std::vector<MeshHierarchy*> meshes = scene.meshes_of(which);
+    const bool moved_triangles = place_ranges(run, buffers.triangles, uploaded.triangles,
+                                              ranges_of(meshes, &MeshHierarchy::triangles),
+                                              [&] { return all(&MeshHierarchy::triangles); });
     const bool moved_nodes = place_ranges(
-        run, buffers.nodes, uploaded.nodes, nodes, [&] { return every(&ObjectHierarchy::nodes); },
-        uploaded.top_room);
+        run, buffers.nodes, uploaded.nodes, ranges_of(meshes, &MeshHierarchy::nodes),
+        [&] { return all(&MeshHierarchy::nodes); }, 2 * uploaded.room);
     if (moved_triangles) {  // nodes contain their places
-        for (BufferRange* range : every(&ObjectHierarchy::nodes)) range->uploaded = false;
+        for (BufferRange* const range : all(&MeshHierarchy::nodes)) range->uploaded = false;
     }
-    return other_top || moved_triangles || moved_nodes;
+    return no_room || moved_triangles || moved_nodes;
 }
 
-/// The triangles of a drawable, and once more with their second texture coordinates if rays need these.
-void write_triangles(const SceneLayout& layout, const SceneLayout::Drawable& drawable,
-                     std::span<const Vertex> vertices, const ObjectHierarchy& object, std::uint32_t first_id,
-                     BufferWriter<gpu::TraceTriangle>& writer) {
-    const auto count = static_cast<std::uint32_t>(object.bvh.order.size());
-    const bool has_second = object.triangles.count > count;
-    const auto traced = [&](std::uint32_t i) {
-        return trace_triangle(layout, drawable, vertices, i, object.source.world, first_id + i);
-    };
-    for (const std::uint32_t i : object.bvh.order) {
-        gpu::TraceTriangle triangle = traced(i);
-        triangle.second = has_second ? count : 0;
+/// The triangles of a mesh, and once more with their second texture coordinates if rays need these.
+void write_triangles(const MeshHierarchy& mesh, BufferWriter<gpu::TraceTriangle>& writer) {
+    const PlacedMesh placed = mesh.placed();
+    const bool has_second = mesh.triangles.count > placed.count();
+    const std::uint32_t first_id = mesh.drawn->first_triangle;
+    for (const std::uint32_t i : mesh.bvh.order) {
+        gpu::TraceTriangle triangle = placed.traced(i, first_id + i);
+        triangle.second = has_second ? placed.count() : 0;
         writer.push_back(triangle);
     }
     if (!has_second) return;
-    for (const std::uint32_t i : object.bvh.order) {
-        const std::array<glm::vec2, 3> uvs = trace_second_uvs(layout, drawable, i);
-        gpu::TraceTriangle triangle = traced(i);
+    for (const std::uint32_t i : mesh.bvh.order) {
+        const std::array<glm::vec2, 3> uvs = placed.second_uvs(i);
+        gpu::TraceTriangle triangle = placed.traced(i, first_id + i);
         triangle.uv_a = uvs[0];
         triangle.uv_b = uvs[1];
         triangle.uv_c = uvs[2];
@@ -111,52 +107,59 @@ void write_triangles(const SceneLayout& layout, const SceneLayout::Drawable& dra
     }
 }
 
-/// `which`: those that may have changed.
-void upload_objects(const Gpu& gpu, Execution& run, const HierarchyBuffers& buffers,
-                    const SceneHierarchy& scene, std::span<const std::uint32_t> which,
-                    const SceneLayout& layout, const Deformations& deformed) {
-    upload_ranges(gpu, run, buffers.nodes, ranges_of(scene.objects, which, &ObjectHierarchy::nodes),
+void upload_meshes(const Gpu& gpu, Execution& run, const HierarchyBuffers& buffers,
+                   const std::vector<MeshHierarchy*>& meshes) {
+    upload_ranges(gpu, run, buffers.nodes, ranges_of(meshes, &MeshHierarchy::nodes),
                   [&](std::size_t i, BufferWriter<gpu::WideNode>& writer) {
-                      writer.append(wide_nodes(scene.placed()[which[i]]));
+                      writer.append(wide_nodes(meshes[i]->bvh, meshes[i]->place()));
                   });
-    upload_ranges(gpu, run, buffers.triangles, ranges_of(scene.objects, which, &ObjectHierarchy::triangles),
+    upload_ranges(gpu, run, buffers.triangles, ranges_of(meshes, &MeshHierarchy::triangles),
                   [&](std::size_t i, BufferWriter<gpu::TraceTriangle>& writer) {
-                      const std::uint32_t object = which[i];
-                      const SceneLayout::Drawable& drawable = layout.drawables[object];
-                      const std::span<const Vertex> vertices = vertices_of(drawable, deformed);
-                      write_triangles(layout, drawable, vertices, *scene.objects[object],
-                                      scene.ids.first(scene.objects[object]->key()), writer);
+                      write_triangles(*meshes[i], writer);
                   });
 }
 
+void upload_instances(const Gpu& gpu, Execution& run, const HierarchyBuffers& buffers,
+                      const UploadedHierarchy& uploaded, std::span<const std::uint32_t> which) {
+    BufferWriter<gpu::WideNode> writer(gpu, run.object(buffers.nodes));
+    for (const std::uint32_t i : which) {
+        const SceneObject& object = *uploaded.scene.objects[i];
+        if (object.mesh->bvh.nodes.empty()) continue;
+        const std::uint32_t root = root_word(object.mesh->bvh, object.mesh->place());
+        writer.seek(uploaded.room + i);
+        writer.push_back(instance_node(object.mesh_from_world, root, object.entity.index));
+    }
+    writer.flush();
+}
+
 /// `all`: not only the nodes that have changed.
-void upload_top(const Gpu& gpu, Execution& run, const HierarchyBuffers& buffers, SceneHierarchy& scene,
+void upload_top(const Gpu& gpu, Execution& run, const HierarchyBuffers& buffers, UploadedHierarchy& uploaded,
                 bool all) {
-    const TopBvh& top = scene.top.top();
-    const auto changed = scene.top.take_changed();
+    const Bvh& top = uploaded.scene.top.tree();
+    const auto changed = uploaded.scene.top.take_changed();
     if (all || !changed) {
         // Buffers must not be empty.
-        if (top.leaves.empty()) upload_one(gpu, run, buffers.triangles, gpu::TraceTriangle{});
-        upload<gpu::WideNode>(gpu, run, buffers.nodes, wide_nodes(top, scene.placed()));
+        if (top.nodes.empty()) upload_one(gpu, run, buffers.triangles, gpu::TraceTriangle{});
+        upload<gpu::WideNode>(gpu, run, buffers.nodes, top_nodes(top, uploaded.room));
         return;
     }
     BufferWriter<gpu::WideNode> writer(gpu, run.object(buffers.nodes));
     for (const std::uint32_t i : *changed) {
         writer.seek(i);
-        writer.push_back(wide_node_at(top, scene.placed(), i));
+        writer.push_back(top_node(top, uploaded.room, i));
     }
     writer.flush();
 }
 
 /// Uploads what has changed since the last call.
 void upload_hierarchy(const Gpu& gpu, Execution& run, const HierarchyBuffers& buffers,
-                      UploadedHierarchy& uploaded, const SceneLayout& layout, const Deformations& deformed) {
-    SceneHierarchy& scene = uploaded.scene;
+                      UploadedHierarchy& uploaded) {
     const bool all = place(run, buffers, uploaded);
-    const std::vector<std::uint32_t> which = all ? all_objects(scene) : scene.changed();
-    for (const std::uint32_t i : which) scene.note_place(i);
-    upload_objects(gpu, run, buffers, scene, which, layout, deformed);
-    upload_top(gpu, run, buffers, scene, all);
+    const std::vector<std::uint32_t> which =
+        all ? all_objects(uploaded.scene) : uploaded.scene.changed();
+    upload_meshes(gpu, run, buffers, uploaded.scene.meshes_of(which));
+    upload_instances(gpu, run, buffers, uploaded, which);
+    upload_top(gpu, run, buffers, uploaded, all);
 }
 
 void warn_of_rounding(Log& log, const SceneMetrics& metrics) {
@@ -186,12 +189,10 @@ Tracing add_bvh(FrameGraph& graph, Gpu& gpu, const SceneData& scene) {
         const auto hierarchy =
             pass.write(graph.value<std::shared_ptr<const SceneHierarchy>>("traced hierarchy"));
         pass.run([=, &gpu, layout_handle = scene.layout, placement_handle = scene.placement](Execution& run) {
-            const SceneLayout& layout = run.value(layout_handle);
             const std::shared_ptr<UploadedHierarchy> uploaded =
                 run.has_result() ? *run.previous(kept) : std::make_shared<UploadedHierarchy>();
-            const ScenePlacement& placement = run.value(placement_handle);
-            uploaded->scene.update(layout, placement);
-            upload_hierarchy(gpu, run, buffers, *uploaded, layout, placement.deformed);
+            uploaded->scene.update(run.value(layout_handle), run.value(placement_handle));
+            upload_hierarchy(gpu, run, buffers, *uploaded);
             const SceneMetrics now = uploaded->scene.metrics();
             warn_of_rounding(gpu.log(), now);
             run.set(metrics, now);
@@ -208,8 +209,8 @@ Tracing add_bvh(FrameGraph& graph, Gpu& gpu, const SceneData& scene) {
 }
 
 void read_tracing(Pass& pass, const Tracing& tracing) {
-    pass.read(tracing.nodes, {Usage::storage, BINDING_BVH_NODES});
-    pass.read(tracing.triangles, {Usage::storage, BINDING_TRIANGLES});
+    pass.read(tracing.nodes, {Usage::sampled, UNIT_BVH_NODES});
+    pass.read(tracing.triangles, {Usage::sampled, UNIT_TRIANGLES});
     pass.read(tracing.materials, {Usage::storage, BINDING_MATERIALS});
     pass.read(tracing.texels, {Usage::storage, BINDING_TEXELS});
     pass.read(tracing.metrics);

@@ -15,7 +15,7 @@ namespace candela {
 /// What shaders trace rays against: shaders/scene/bvh.glsl.
 struct Tracing {
     BufferHandle<gpu::WideNode> nodes;
-    BufferHandle<gpu::TraceTriangle> triangles;  ///< world space, in the order of the leaves
+    BufferHandle<gpu::TraceTriangle> triangles;  ///< by mesh, in its space, in the order of the leaves
     BufferHandle<gpu::Material> materials;
     BufferHandle<std::uint32_t> texels;
     ValueHandle<SceneMetrics> metrics;
@@ -23,9 +23,9 @@ struct Tracing {
     ValueHandle<std::shared_ptr<const SceneHierarchy>> hierarchy;
 };
 
-/// Adds node `bvh` (CPU, then upload): a bounding-volume hierarchy over the triangles that stop light, in
-/// world space, and the scene's metrics: see SceneHierarchy. Only what has changed is uploaded. Depends on
-/// the scene's layout and placement, and on its own last result.
+/// Adds node `bvh` (CPU, then upload): a bounding-volume hierarchy over instances of the meshes that stop
+/// light, and the scene's metrics: see SceneHierarchy. Only what has changed is uploaded. Depends on the
+/// scene's layout and placement, and on its own last result.
 [[nodiscard]] Tracing add_bvh(FrameGraph& graph, Gpu& gpu, const SceneData& scene);
 
 /// For a pass whose shader includes bvh.glsl.

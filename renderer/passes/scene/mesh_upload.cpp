@@ -75,6 +75,7 @@ const MeshTable::Primitives& MeshTable::take(const std::shared_ptr<const Mesh>& 
         meshes_.take(mesh.get(), [&] { return Uploaded{.mesh = mesh, .primitives = {}}; });
     Uploaded& uploaded = meshes_[number];
     if (uploaded.ranges.size() == mesh->primitives.size()) return uploaded.primitives;
+    std::uint32_t first_triangle = 0;
     for (const Primitive& primitive : mesh->primitives) {
         const std::uint32_t material = materials.take(primitive.material);
         const glm::vec3 albedo = materials.mean_albedo(material) * mean_colour_of(primitive);
@@ -82,11 +83,13 @@ const MeshTable::Primitives& MeshTable::take(const std::shared_ptr<const Mesh>& 
             DrawnPrimitive{.mesh = mesh,
                            .mesh_number = number,
                            .index_in_mesh = static_cast<std::uint32_t>(uploaded.primitives.size()),
+                           .first_triangle = first_triangle,
                            .material = material,
                            .bounds = box_around(primitive.vertices),
                            .albedo = std::max({albedo.r, albedo.g, albedo.b}),
                            .is_solid = drawn_alpha(*primitive.material) != AlphaMode::blend,
                            .parts = boxes_of_parts(primitive)}));
+        first_triangle += static_cast<std::uint32_t>(primitive.indices.size() / 3);
         uploaded.ranges.push_back(
             {.vertices = {.count = static_cast<std::uint32_t>(primitive.vertices.size())},
              .indices = {.count = static_cast<std::uint32_t>(primitive.indices.size())}});

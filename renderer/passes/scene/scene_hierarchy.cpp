@@ -1,11 +1,14 @@
 #include "renderer/passes/scene/scene_hierarchy.hpp"
 
 #include <algorithm>
-#include <glm/common.hpp>
-#include <span>
+#include <cmath>
+#include <optional>
+#include <unordered_set>
 #include <utility>
 
-#include "renderer/passes/scene/world_triangles.hpp"
+#include <glm/common.hpp>
+#include <glm/gtx/component_wise.hpp>
+#include <glm/matrix.hpp>
 
 namespace candela {
 namespace {
@@ -19,14 +22,6 @@ std::shared_ptr<const DeformedMesh::Vertices> deformed_vertices(const Deformatio
     return found == nullptr ? nullptr : found->vertices;
 }
 
-/// The same drawable, in the way that it was last made from.
-bool is_made_from(const ObjectHierarchy::Source& source, const SceneLayout& layout,
-                  const SceneLayout::Drawable& drawable, const ScenePlacement& placement) {
-    return source.is_made && source.mirrored == layout.geometry.items[drawable.item].mirrored &&
-           source.world == placement.world[drawable.item] &&
-           source.vertices == deformed_vertices(placement.deformed, drawable.item);
-}
-
 double area_of(std::span<const Triangle> triangles) {
     double sum = 0.0;
     for (const Triangle& t : triangles) {
@@ -35,22 +30,77 @@ double area_of(std::span<const Triangle> triangles) {
     return sum;
 }
 
-/// Returns whether the hierarchy was built again.
-bool fit(ObjectHierarchy& object, std::span<const Triangle> triangles) {
-    if (object.bvh.order.size() == triangles.size()) {
-        refit(object.bvh, triangles);
-        if (sah_cost(object.bvh) <= rebuild_above * object.built_cost) return false;
-    }
-    object.bvh = build_bvh(triangles, object_max_depth);
-    object.built_cost = sah_cost(object.bvh);
-    object.nodes = {.count = static_cast<std::uint32_t>(object.bvh.nodes.size() / 2)};
-    return true;
+/// Whether rays can enter the space that a matrix leads from: rounding there must not grow beyond what the
+/// offset of rays bears. The product is at least the matrix's condition number.
+bool has_good_inverse(const glm::mat4& world) {
+    constexpr float most = 1e4F;
+    const auto size = [](const glm::mat3& m) {
+        return std::sqrt(glm::dot(m[0], m[0]) + glm::dot(m[1], m[1]) + glm::dot(m[2], m[2]));
+    };
+    const glm::mat3 matrix(world);
+    return size(matrix) * size(glm::inverse(matrix)) < most;  // not if there is none
 }
 
-/// In place of the hierarchies of drawables that have none.
-const Bvh empty_bvh{};
+/// What the area of surfaces is multiplied by; nullopt: not the same factor for all.
+std::optional<double> factor_of_areas(const glm::mat4& world) {
+    constexpr float rounding = 1e-5F;
+    const glm::mat3 matrix(world);
+    const glm::mat3 squared = glm::transpose(matrix) * matrix;
+    const float factor = squared[0][0];
+    const glm::mat3 rest = squared - glm::mat3(factor);
+    for (glm::length_t i = 0; i < 3; ++i) {
+        if (!(glm::compMax(glm::abs(rest[i])) <= rounding * factor)) return std::nullopt;
+    }
+    return static_cast<double>(factor);
+}
+
+float area_in_world(const SceneObject& object) {
+    const auto factor = factor_of_areas(object.world_from_mesh);
+    return static_cast<float>(factor ? *factor * object.mesh->area : area_of(object.in_world().triangles()));
+}
+
+/// Adds the box around a node's triangles, from those of nodes so many levels below: the box around a turned
+/// box is larger than need be.
+void grow_by_node(Box& box, const Bvh& bvh, std::uint32_t index, const glm::mat4& world, int levels) {
+    const BvhNode& node = bvh.nodes[index];
+    if (node.count > 0 || levels == 0) return box.grow(place_box({node.lower, node.upper}, world));
+    grow_by_node(box, bvh, node.first, world, levels - 1);
+    grow_by_node(box, bvh, node.first + 1, world, levels - 1);
+}
+
+/// The box around an object, world space.
+Box box_of(const SceneObject& object) {
+    const Bvh& bvh = object.mesh->bvh;
+    Box box;
+    if (bvh.nodes.empty()) return box;
+    constexpr int levels = 4;
+    grow_by_node(box, bvh, 0, object.world_from_mesh, levels);
+    return box;
+}
 
 }  // namespace
+
+PlacedMesh MeshHierarchy::placed() const {
+    const std::vector<Vertex>& own = vertices ? (*vertices)[drawn->index_in_mesh] : drawn->primitive().vertices;
+    return {.drawn = *drawn, .vertices = own, .matrix = matrix, .mirrored = mirrored};
+}
+
+PlacedMesh SceneObject::in_world() const {
+    PlacedMesh placed = mesh->placed();
+    placed.matrix = world_from_mesh * mesh->matrix;
+    placed.mirrored = glm::determinant(glm::mat3(placed.matrix)) < 0.0F;
+    return placed;
+}
+
+std::vector<MeshHierarchy*> SceneHierarchy::meshes_of(std::span<const std::uint32_t> which) const {
+    std::vector<MeshHierarchy*> meshes;
+    std::unordered_set<const MeshHierarchy*> known;
+    for (const std::uint32_t i : which) {
+        MeshHierarchy* const mesh = objects[i]->mesh.get();
+        if (known.insert(mesh).second) meshes.push_back(mesh);
+    }
+    return meshes;
+}
 
 void SceneHierarchy::update(const SceneLayout& layout, const ScenePlacement& placement) {
     changed_.clear();
@@ -60,7 +110,9 @@ void SceneHierarchy::update(const SceneLayout& layout, const ScenePlacement& pla
     std::ranges::sort(candidates);
     candidates.erase(std::unique(candidates.begin(), candidates.end()), candidates.end());
     placement_ = placement;
-    fit_top(fit_objects(layout, placement, candidates));
+    make_objects(layout, placement, candidates);
+    free_meshes();
+    fit_top();
     add_up();
 }
 
@@ -68,92 +120,130 @@ void SceneHierarchy::update(const SceneLayout& layout, const ScenePlacement& pla
 /// item has another number.
 std::vector<std::uint32_t> SceneHierarchy::take_over(const SceneLayout& layout) {
     objects.resize(layout.drawables.size());
-    placed_.resize(objects.size(), {.bvh = &empty_bvh});
-    std::vector<std::uint32_t> added;
-    std::vector<std::uint32_t> renumbered;
+    boxes_.resize(objects.size());
+    std::vector<std::uint32_t> changed;
     visit_changes(drawables_, layout.drawables, [&](std::size_t i) {
         const auto object = static_cast<std::uint32_t>(i);
         const SceneLayout::Drawable& drawable = layout.drawables[i];
         const bool is_solid = SceneLayout::is_solid(drawable);
         const bool stays = objects[i] && is_solid && objects[i]->drawn == drawable.drawn &&
                            objects[i]->entity == drawable.entity;
-        if (stays) return renumbered.push_back(object);
-        if (objects[i]) remove(object);
-        if (is_solid) added.push_back(object);
+        if (objects[i] && !stays) remove(object);
+        if (!is_solid) return;
+        changed.push_back(object);
+        if (!stays) objects[i] = std::make_unique<SceneObject>(SceneObject{drawable.entity, drawable.drawn});
     });
-    std::ranges::sort(added, {}, [&](std::uint32_t object) {
-        const SceneLayout::Drawable& drawable = layout.drawables[object];
-        return key_of(drawable.entity, *drawable.drawn);
-    });
-    for (const std::uint32_t object : added) add(object, layout);
     drawables_ = layout.drawables;
-    added.insert(added.end(), renumbered.begin(), renumbered.end());
-    return added;
+    return changed;
 }
 
 void SceneHierarchy::remove(std::uint32_t object) {
-    top.remove(object);
-    ids.remove(objects[object]->key());
-    freed_.nodes.push_back(objects[object]->nodes);
-    freed_.triangles.push_back(objects[object]->triangles);
+    leave(objects[object]->mesh);
     objects[object] = nullptr;
-    placed_[object] = {.bvh = &empty_bvh};
+    boxes_[object] = {};
+    top.set(object, {});
     removed_.push_back(object);
 }
 
-void SceneHierarchy::add(std::uint32_t object, const SceneLayout& layout) {
-    const SceneLayout::Drawable& drawable = layout.drawables[object];
-    objects[object] = std::make_unique<ObjectHierarchy>();
-    objects[object]->entity = drawable.entity;
-    objects[object]->drawn = drawable.drawn;
-    note_place(object);
-    const auto triangles = static_cast<std::uint32_t>(drawable.primitive().indices.size() / 3);
-    if (ids.insert(objects[object]->key(), triangles)) return;
-    for (std::uint32_t i = 0; i < objects.size(); ++i) {
-        if (!objects[i] || !objects[i]->source.is_made) continue;
-        objects[i]->triangles.uploaded = false;
-        changed_.push_back(i);
-    }
-}
-
-SceneHierarchy::Fitted SceneHierarchy::fit_objects(const SceneLayout& layout, const ScenePlacement& placement,
-                                                   const std::vector<std::uint32_t>& candidates) {
-    Fitted fitted;
+void SceneHierarchy::make_objects(const SceneLayout& layout, const ScenePlacement& placement,
+                                  const std::vector<std::uint32_t>& candidates) {
     for (const std::uint32_t i : candidates) {
-        ObjectHierarchy& object = *objects[i];
+        SceneObject& object = *objects[i];
         const SceneLayout::Drawable& drawable = layout.drawables[i];
-        if (is_made_from(object.source, layout, drawable, placement)) continue;
-        object.source = {.is_made = true,
-                         .mirrored = layout.geometry.items[drawable.item].mirrored,
-                         .world = placement.world[drawable.item],
-                         .vertices = deformed_vertices(placement.deformed, drawable.item)};
-        const std::vector<Triangle> triangles =
-            place_triangles(layout, drawable, vertices_of(drawable, placement.deformed), object.source.world);
-        const BufferRange nodes = object.nodes;
-        (fit(object, triangles) ? fitted.built : fitted.refitted).push_back(i);
-        if (object.nodes.first != nodes.first) freed_.nodes.push_back(nodes);
-        object.area = static_cast<float>(area_of(triangles));
-        // The second texture coordinates follow as triangles of their own.
-        const std::uint32_t records = traces_second_uvs(drawable.primitive()) ? 2 : 1;
-        object.triangles.count = records * static_cast<std::uint32_t>(triangles.size());
-        object.nodes.uploaded = object.triangles.uploaded = false;
+        SceneObject::Source source{placement.world[drawable.item],
+                                   deformed_vertices(placement.deformed, drawable.item)};
+        if (object.mesh && object.source == source) continue;
+        object.source = std::move(source);
+        make(object, layout.geometry.items[drawable.item].mirrored);
+        boxes_[i] = box_of(object);
         changed_.push_back(i);
     }
-    std::ranges::sort(changed_);
-    changed_.erase(std::unique(changed_.begin(), changed_.end()), changed_.end());
-    return fitted;
 }
 
-void SceneHierarchy::fit_top(const Fitted& fitted) {
-    const bool builds = fitted.built.size() > objects.size() / 4;
-    if (!builds) {
-        for (const std::uint32_t i : fitted.built) {
-            top.remove(i);
-            top.insert(placed_, i);
-        }
-        top.refit(placed_, fitted.refitted);
+/// Makes an object from its source. `mirrored`: its matrix reverses the winding.
+void SceneHierarchy::make(SceneObject& object, bool mirrored) {
+    const std::shared_ptr<MeshHierarchy> last = object.mesh;
+    const glm::mat4& world = object.source.world;
+    const bool enters = has_good_inverse(world);
+    if (!enters) {
+        object.mesh = own_mesh(object, world, mirrored);
+    } else if (object.source.vertices) {
+        object.mesh = own_mesh(object, glm::mat4(1.0F), false);
+    } else {
+        object.mesh = shared_mesh(object);
     }
-    if (builds || top.is_worn()) top.build(placed_);
+    object.world_from_mesh = enters ? world : glm::mat4(1.0F);
+    object.mesh_from_world = glm::inverse(object.world_from_mesh);
+    if (object.mesh != last) {
+        ++object.mesh->users;
+        leave(last);
+    }
+    object.area = area_in_world(object);
+}
+
+std::shared_ptr<MeshHierarchy> SceneHierarchy::shared_mesh(const SceneObject& object) {
+    std::shared_ptr<MeshHierarchy>& mesh = shared_[object.drawn.get()];
+    if (!mesh) {
+        mesh = std::make_shared<MeshHierarchy>();
+        mesh->drawn = object.drawn;
+        mesh->is_shared = true;
+        fit(*mesh);
+    }
+    return mesh;
+}
+
+std::shared_ptr<MeshHierarchy> SceneHierarchy::own_mesh(const SceneObject& object, const glm::mat4& matrix,
+                                                        bool mirrored) {
+    const bool has_own = object.mesh && !object.mesh->is_shared;
+    auto mesh = has_own ? object.mesh : std::make_shared<MeshHierarchy>();
+    mesh->drawn = object.drawn;
+    mesh->vertices = object.source.vertices;
+    mesh->matrix = matrix;
+    mesh->mirrored = mirrored;
+    fit(*mesh);
+    return mesh;
+}
+
+/// Fits a hierarchy to its triangles, or builds it.
+void SceneHierarchy::fit(MeshHierarchy& mesh) {
+    const std::vector<Triangle> triangles = mesh.placed().triangles();
+    const bool has_been_built = mesh.bvh.order.size() == triangles.size();
+    if (has_been_built) refit(mesh.bvh, triangles);
+    if (!has_been_built || sah_cost(mesh.bvh) > rebuild_above * mesh.built_cost) {
+        mesh.bvh = build_bvh(triangles, mesh_max_depth);
+        mesh.built_cost = sah_cost(mesh.bvh);
+        freed_.nodes.push_back(mesh.nodes);
+        mesh.nodes = {.count = static_cast<std::uint32_t>(mesh.bvh.nodes.size() / 2)};
+    }
+    mesh.area = area_of(triangles);
+    // The second texture coordinates follow as triangles of their own.
+    const std::uint32_t records = traces_second_uvs(mesh.drawn->primitive()) ? 2 : 1;
+    mesh.triangles.count = records * static_cast<std::uint32_t>(triangles.size());
+    mesh.nodes.uploaded = mesh.triangles.uploaded = false;
+}
+
+/// An object is no longer made of the hierarchy, if it was of one.
+void SceneHierarchy::leave(const std::shared_ptr<MeshHierarchy>& mesh) {
+    if (!mesh) return;
+    --mesh->users;
+    left_.push_back(mesh);
+}
+
+/// Frees the hierarchies that no object is made of any more. At the end of an update, since others may have
+/// come.
+void SceneHierarchy::free_meshes() {
+    for (const std::shared_ptr<MeshHierarchy>& mesh : std::exchange(left_, {})) {
+        if (mesh->users > 0) continue;
+        freed_.nodes.push_back(std::exchange(mesh->nodes, {}));
+        freed_.triangles.push_back(std::exchange(mesh->triangles, {}));
+        if (mesh->is_shared) shared_.erase(mesh->drawn.get());
+    }
+}
+
+void SceneHierarchy::fit_top() {
+    const bool builds = changed_.size() > objects.size() / 4;
+    for (std::size_t i = 0; !builds && i < changed_.size(); ++i) top.set(changed_[i], boxes_[changed_[i]]);
+    if (builds || top.is_worn()) top.build(boxes_);
 }
 
 /// Areas are floats, so that sums of them in doubles are exact, or nearly so: they must not depend on the
@@ -170,7 +260,7 @@ void SceneHierarchy::add_up() {
         const std::size_t end = std::min(objects.size(), (block + 1) * block_size);
         for (std::size_t i = block * block_size; i < end; ++i) {
             if (!objects[i]) continue;
-            sums.triangles += objects[i]->bvh.order.size();
+            sums.triangles += objects[i]->mesh->bvh.order.size();
             sums.area += static_cast<double>(objects[i]->area);
             sums.reflecting += static_cast<double>(objects[i]->area * objects[i]->drawn->albedo);
         }
@@ -187,17 +277,13 @@ SceneMetrics SceneHierarchy::metrics() const {
     }
     metrics.triangles = all.triangles;
     if (metrics.triangles == 0) return metrics;
-    const BvhNode& root = top.top().bvh.nodes.front();
+    if (top.tree().nodes.empty()) return metrics;
+    const BvhNode& root = top.tree().nodes.front();
     metrics.lower = root.lower;
     metrics.upper = root.upper;
     metrics.area = static_cast<float>(all.area);
     metrics.mean_albedo = all.area > 0.0 ? static_cast<float>(all.reflecting / all.area) : 0.0F;
     return metrics;
-}
-
-void SceneHierarchy::note_place(std::uint32_t object) {
-    const ObjectHierarchy& hierarchy = *objects[object];
-    placed_[object] = {&hierarchy.bvh, hierarchy.nodes.first, hierarchy.triangles.first};
 }
 
 }  // namespace candela

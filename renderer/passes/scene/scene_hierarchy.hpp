@@ -9,13 +9,16 @@
 #include <glm/vec3.hpp>
 #include <limits>
 #include <memory>
+#include <span>
+#include <unordered_map>
 #include <utility>
 #include <vector>
 
 #include "engine/bvh/kept_top.hpp"
+#include "engine/bvh/wide.hpp"
 #include "renderer/gpu/buffer_ranges.hpp"
 #include "renderer/passes/scene/scene_layout.hpp"
-#include "renderer/passes/scene/triangle_ids.hpp"
+#include "renderer/passes/scene/world_triangles.hpp"
 
 namespace candela {
 
@@ -49,30 +52,49 @@ struct SceneMetrics {
     }
 };
 
-/// The hierarchy over the triangles of one solid drawable, in world space, and its place on the GPU.
-struct ObjectHierarchy {
-    /// What triangles and nodes are made from, besides the primitive.
-    struct Source {
-        bool is_made = false;
-        bool mirrored = false;
-        glm::mat4 world{1.0F};
-        std::shared_ptr<const DeformedMesh::Vertices> vertices;  ///< null: those of the mesh
-    };
-    Entity entity;
+/// The hierarchy over the triangles of a primitive, and its place on the GPU. All objects of a primitive share
+/// it. One that is deformed has its own, and so has one whose matrix has no good inverse, as of a flat one:
+/// this is in world space.
+struct MeshHierarchy {
     std::shared_ptr<const DrawnPrimitive> drawn;
-    Source source;
+    std::shared_ptr<const DeformedMesh::Vertices> vertices;  ///< null: those of the mesh
+    glm::mat4 matrix{1.0F};  ///< leads from the mesh's space to that of the triangles
+    bool mirrored = false;   ///< it reverses the winding
+    bool is_shared = false;
+    std::uint32_t users = 0;  ///< objects
     Bvh bvh;
     float built_cost = 0.0F;  ///< SAH cost at the last build
-    float area = 0.0F;        ///< of the triangles, one side each, m²
+    double area = 0.0;        ///< of the triangles, one side each, m²
     BufferRange nodes;        ///< wide ones
     BufferRange triangles;
 
-    [[nodiscard]] PrimitiveKey key() const { return key_of(entity, *drawn); }
+    [[nodiscard]] PlacedMesh placed() const;
+    [[nodiscard]] MeshPlace place() const { return {nodes.first, triangles.first}; }
 };
 
-/// The hierarchy over the triangles of all solid drawables, kept from frame to frame: one for each, joined by
-/// a top (engine/bvh/kept_top.hpp). What has moved is refitted, and built again once its SAH cost
-/// exceeds 1.5 times that of the last build. An update takes no time for what has not changed.
+/// A solid drawable.
+struct SceneObject {
+    /// What it is made from, besides the primitive.
+    struct Source {
+        glm::mat4 world{1.0F};
+        std::shared_ptr<const DeformedMesh::Vertices> vertices;  ///< null: those of the mesh
+        bool operator==(const Source&) const = default;
+    };
+    Entity entity;
+    std::shared_ptr<const DrawnPrimitive> drawn;
+    Source source{};
+    std::shared_ptr<MeshHierarchy> mesh{};  ///< null: it is not made yet
+    glm::mat4 world_from_mesh{1.0F};        ///< leads from the space of the hierarchy's triangles to the world
+    glm::mat4 mesh_from_world{1.0F};        ///< its inverse
+    float area = 0.0F;                      ///< of the triangles in world space, one side each, m²
+
+    /// Its triangles in world space.
+    [[nodiscard]] PlacedMesh in_world() const;
+};
+
+/// The hierarchy over the triangles of all solid drawables, kept from frame to frame: a top over the objects
+/// (engine/bvh/kept_top.hpp), and a hierarchy of each mesh. What is deformed is refitted, and built again once
+/// its SAH cost exceeds 1.5 times that of the last build. An update takes no time for what has not changed.
 class SceneHierarchy {
  public:
     /// Brings everything up to date with the scene. The ranges of what has changed are not `uploaded` then.
@@ -80,7 +102,9 @@ class SceneHierarchy {
 
     /// Numbers of the objects that the last update has changed or added, ascending.
     [[nodiscard]] const std::vector<std::uint32_t>& changed() const { return changed_; }
-    /// The ranges that have no object any more since the last call.
+    /// The hierarchies of these objects, each once.
+    [[nodiscard]] std::vector<MeshHierarchy*> meshes_of(std::span<const std::uint32_t> which) const;
+    /// The ranges that have no mesh any more since the last call.
     struct Freed {
         std::vector<BufferRange> nodes;
         std::vector<BufferRange> triangles;
@@ -88,13 +112,8 @@ class SceneHierarchy {
     [[nodiscard]] Freed take_freed() { return std::exchange(freed_, {}); }
 
     [[nodiscard]] SceneMetrics metrics() const;
-    /// The objects, and where they are in the buffers by the last call of note_place.
-    [[nodiscard]] const std::vector<PlacedBvh>& placed() const { return placed_; }
-    /// Takes over where the object's ranges are.
-    void note_place(std::uint32_t object);
 
-    std::vector<std::unique_ptr<ObjectHierarchy>> objects;  ///< by drawable; null unless it is solid
-    TriangleIds ids;
+    std::vector<std::unique_ptr<SceneObject>> objects;  ///< by drawable; null unless it is solid
     KeptTop top;
 
  private:
@@ -105,23 +124,26 @@ class SceneHierarchy {
         std::uint64_t triangles = 0;
     };
     static constexpr std::size_t block_size = 64;
-    /// Numbers of the objects whose hierarchies have other boxes.
-    struct Fitted {
-        std::vector<std::uint32_t> refitted;  // with the topology that they had
-        std::vector<std::uint32_t> built;
-    };
 
     [[nodiscard]] std::vector<std::uint32_t> take_over(const SceneLayout& layout);
     void remove(std::uint32_t object);
-    void add(std::uint32_t object, const SceneLayout& layout);
-    [[nodiscard]] Fitted fit_objects(const SceneLayout& layout, const ScenePlacement& placement,
-                                     const std::vector<std::uint32_t>& candidates);
-    void fit_top(const Fitted& fitted);
+    void make_objects(const SceneLayout& layout, const ScenePlacement& placement,
+                      const std::vector<std::uint32_t>& candidates);
+    void make(SceneObject& object, bool mirrored);
+    [[nodiscard]] std::shared_ptr<MeshHierarchy> shared_mesh(const SceneObject& object);
+    [[nodiscard]] std::shared_ptr<MeshHierarchy> own_mesh(const SceneObject& object, const glm::mat4& matrix,
+                                                          bool mirrored);
+    void fit(MeshHierarchy& mesh);
+    void leave(const std::shared_ptr<MeshHierarchy>& mesh);
+    void free_meshes();
+    void fit_top();
     void add_up();
 
-    std::vector<PlacedBvh> placed_;                 // by object
-    SharedArray<SceneLayout::Drawable> drawables_;  // in the last update
-    ScenePlacement placement_;                      // in the last update
+    std::unordered_map<const DrawnPrimitive*, std::shared_ptr<MeshHierarchy>> shared_;
+    std::vector<std::shared_ptr<MeshHierarchy>> left_;  // that an object has left in this update
+    std::vector<Box> boxes_;                            // by object; empty: it is not in the top
+    SharedArray<SceneLayout::Drawable> drawables_;      // in the last update
+    ScenePlacement placement_;                          // in the last update
     std::vector<std::uint32_t> changed_;
     std::vector<std::uint32_t> removed_;  // since the last call of add_up
     Freed freed_;

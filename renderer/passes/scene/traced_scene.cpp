@@ -20,29 +20,16 @@ glm::vec3 cross_of(const Triangle& triangle) {
     return glm::cross(triangle.b - triangle.a, triangle.c - triangle.a);
 }
 
-/// One solid drawable of a scene, as rays meet it.
-struct TracedObject {
-    const TracedScene& scene;
-    const SceneLayout::Drawable& drawable;
-    std::span<const Vertex> vertices;
-    const glm::mat4& world;
+bool has_hole(const PlacedMesh& mesh, const Hit& hit) {
+    const Material& material = *mesh.drawn.primitive().material;
+    if (material.alpha_mode != AlphaMode::mask) return false;
+    return is_hole(material, mesh.traced(hit.triangle, 0), {hit.u, hit.v});
+}
 
-    [[nodiscard]] Triangle triangle(std::uint32_t i) const {
-        return place_triangle(scene.layout, drawable, vertices, i, world);
-    }
-
-    [[nodiscard]] bool has_hole(const Hit& hit) const {
-        const Material& material = *drawable.primitive().material;
-        if (material.alpha_mode != AlphaMode::mask) return false;
-        return is_hole(material, trace_triangle(scene.layout, drawable, vertices, hit.triangle, world, 0),
-                       {hit.u, hit.v});
-    }
-};
-
-TracedObject object_at(const TracedScene& scene, std::uint32_t index) {
-    const SceneLayout::Drawable& drawable = scene.layout.drawables[index];
-    return {scene, drawable, vertices_of(drawable, scene.placement.deformed),
-            scene.placement.world[drawable.item]};
+/// The ray in the space of an object's mesh. The distance along it is the same there.
+Ray ray_in(const SceneObject& object, const Ray& ray) {
+    return {glm::vec3(object.mesh_from_world * glm::vec4(ray.origin, 1.0F)),
+            glm::mat3(object.mesh_from_world) * ray.direction, ray.t_min, ray.t_max};
 }
 
 /// Calls `found(hit, triangle, object)` for surfaces that the ray meets, roughly from near to far. It returns
@@ -50,16 +37,16 @@ TracedObject object_at(const TracedScene& scene, std::uint32_t index) {
 template <class Found>
 void trace(const TracedScene& scene, const Ray& ray, Found&& found) {
     float limit = ray.t_max;
-    traverse(scene.hierarchy.top.top().bvh, ray, [&](std::uint32_t i) {
-        const TopBvh::Leaf& leaf = scene.hierarchy.top.top().leaves[i];
-        const TracedObject object = object_at(scene, leaf.object);
-        const auto visit = [&](std::uint32_t index) {
-            const Triangle triangle = object.triangle(index);
-            const auto hit = intersect(triangle, index, ray);
-            if (hit && hit->t < limit && !object.has_hole(*hit)) limit = found(*hit, triangle, leaf.object);
+    traverse(scene.hierarchy.top.tree(), ray, [&](std::uint32_t i) {
+        const SceneObject& object = *scene.hierarchy.objects[i];
+        const PlacedMesh mesh = object.mesh->placed();
+        const Ray local = ray_in(object, ray);
+        traverse(object.mesh->bvh, local, [&](std::uint32_t index) {
+            const auto hit = intersect(mesh.triangle(index), index, local);
+            if (hit && hit->t < limit && !has_hole(mesh, *hit))
+                limit = found(*hit, object.in_world().triangle(index), i);
             return limit;
-        };
-        traverse(scene.hierarchy.objects[leaf.object]->bvh, ray, visit, leaf.node);
+        });
         return limit;
     });
 }

@@ -41,34 +41,61 @@ std::uint32_t packed_normal(const glm::vec3& normal) {
     return glm::packSnorm2x16(normal.z >= 0.0F ? p : folded);
 }
 
-/// Vertex indices of triangle i of a drawable, counter-clockwise in world space.
-glm::uvec3 corners(const SceneLayout& layout, const SceneLayout::Drawable& drawable, std::uint32_t i) {
-    const auto& indices = drawable.primitive().indices;
-    const std::uint32_t first = 3 * i;
-    if (layout.geometry.items[drawable.item].mirrored) {
-        return {indices[first], indices[first + 2], indices[first + 1]};
-    }
-    return {indices[first], indices[first + 1], indices[first + 2]};
-}
-
 }  // namespace
 
-Triangle place_triangle(const SceneLayout& layout, const SceneLayout::Drawable& drawable,
-                        std::span<const Vertex> vertices, std::uint32_t i, const glm::mat4& world) {
-    const glm::uvec3 corner = corners(layout, drawable, i);
-    return {transformed(world, vertices[corner.x].position), transformed(world, vertices[corner.y].position),
-            transformed(world, vertices[corner.z].position)};
+glm::uvec3 PlacedMesh::corners(std::uint32_t i) const {
+    const auto& indices = drawn.primitive().indices;
+    const glm::uvec3 in_mesh(indices[3 * i], indices[3 * i + 1], indices[3 * i + 2]);
+    return mirrored ? glm::uvec3(in_mesh.x, in_mesh.z, in_mesh.y) : in_mesh;
 }
 
-std::vector<Triangle> place_triangles(const SceneLayout& layout, const SceneLayout::Drawable& drawable,
-                                      std::span<const Vertex> vertices, const glm::mat4& world) {
-    const auto count = static_cast<std::uint32_t>(drawable.primitive().indices.size() / 3);
-    std::vector<Triangle> triangles;
-    triangles.reserve(count);
-    for (std::uint32_t i = 0; i < count; ++i) {
-        triangles.push_back(place_triangle(layout, drawable, vertices, i, world));
-    }
-    return triangles;
+Triangle PlacedMesh::triangle(std::uint32_t i) const {
+    const glm::uvec3 corner = corners(i);
+    return {transformed(matrix, vertices[corner.x].position),
+            transformed(matrix, vertices[corner.y].position),
+            transformed(matrix, vertices[corner.z].position)};
+}
+
+std::vector<Triangle> PlacedMesh::triangles() const {
+    std::vector<Triangle> all;
+    all.reserve(count());
+    for (std::uint32_t i = 0; i < count(); ++i) all.push_back(triangle(i));
+    return all;
+}
+
+std::array<glm::vec2, 3> PlacedMesh::second_uvs(std::uint32_t i) const {
+    const std::vector<glm::vec2>& uvs = drawn.primitive().second_uvs;
+    const glm::uvec3 corner = corners(i);
+    return {uvs[corner.x], uvs[corner.y], uvs[corner.z]};
+}
+
+gpu::TraceTriangle PlacedMesh::traced(std::uint32_t i, std::uint32_t id) const {
+    const bool is_masked = drawn.primitive().material->alpha_mode == AlphaMode::mask;
+    const Triangle placed = triangle(i);
+    const glm::uvec3 corner = corners(i);
+    const glm::mat3 turned = normal_matrix(matrix);
+    return {.a = placed.a,
+            .material = drawn.material,
+            .edge_ab = placed.b - placed.a,
+            .id = id | (is_masked ? TRIANGLE_MASKED : 0U),
+            .edge_ac = placed.c - placed.a,
+            .colour_a = packed_colour(vertices[corner.x].colour),
+            .uv_a = vertices[corner.x].uv,
+            .uv_b = vertices[corner.y].uv,
+            .uv_c = vertices[corner.z].uv,
+            .colour_b = packed_colour(vertices[corner.y].colour),
+            .colour_c = packed_colour(vertices[corner.z].colour),
+            .normal_a = packed_normal(turned * vertices[corner.x].normal),
+            .normal_b = packed_normal(turned * vertices[corner.y].normal),
+            .normal_c = packed_normal(turned * vertices[corner.z].normal)};
+}
+
+PlacedMesh placed_in_world(const SceneLayout& layout, const SceneLayout::Drawable& drawable,
+                           const ScenePlacement& placement) {
+    return {.drawn = *drawable.drawn,
+            .vertices = vertices_of(drawable, placement.deformed),
+            .matrix = placement.world[drawable.item],
+            .mirrored = layout.geometry.items[drawable.item].mirrored};
 }
 
 Box place_box(const Box& box, const glm::mat4& world) {
@@ -83,36 +110,6 @@ bool traces_second_uvs(const Primitive& primitive) {
     const Material& material = *primitive.material;
     return (material.second_uvs.emissive && material.emissive_texture) ||
            (material.second_uvs.normal && material.normal_texture);
-}
-
-std::array<glm::vec2, 3> trace_second_uvs(const SceneLayout& layout, const SceneLayout::Drawable& drawable,
-                                          std::uint32_t i) {
-    const std::vector<glm::vec2>& uvs = drawable.primitive().second_uvs;
-    const glm::uvec3 corner = corners(layout, drawable, i);
-    return {uvs[corner.x], uvs[corner.y], uvs[corner.z]};
-}
-
-gpu::TraceTriangle trace_triangle(const SceneLayout& layout, const SceneLayout::Drawable& drawable,
-                                  std::span<const Vertex> vertices, std::uint32_t i, const glm::mat4& world,
-                                  std::uint32_t id) {
-    const bool is_masked = drawable.primitive().material->alpha_mode == AlphaMode::mask;
-    const Triangle triangle = place_triangle(layout, drawable, vertices, i, world);
-    const glm::uvec3 corner = corners(layout, drawable, i);
-    const glm::mat3 to_world = normal_matrix(world);
-    return {.a = triangle.a,
-            .material = drawable.drawn->material,
-            .edge_ab = triangle.b - triangle.a,
-            .id = id | (is_masked ? TRIANGLE_MASKED : 0U),
-            .edge_ac = triangle.c - triangle.a,
-            .colour_a = packed_colour(vertices[corner.x].colour),
-            .uv_a = vertices[corner.x].uv,
-            .uv_b = vertices[corner.y].uv,
-            .uv_c = vertices[corner.z].uv,
-            .colour_b = packed_colour(vertices[corner.y].colour),
-            .colour_c = packed_colour(vertices[corner.z].colour),
-            .normal_a = packed_normal(to_world * vertices[corner.x].normal),
-            .normal_b = packed_normal(to_world * vertices[corner.y].normal),
-            .normal_c = packed_normal(to_world * vertices[corner.z].normal)};
 }
 
 bool is_hole(const Material& material, const gpu::TraceTriangle& triangle, glm::vec2 weights) {

@@ -33,17 +33,18 @@ SceneTriangles triangles_of(const SceneLayout& layout, const PlacementKey& key) 
     SceneTriangles scene{.triangles = {}, .item_of = {}, .materials = layout.materials};
     layout.visit_solids([&](std::uint32_t number) {
         const SceneLayout::Drawable& drawable = layout.drawables[number];
-        const std::vector<Vertex>& vertices = drawable.primitive().vertices;
-        const glm::mat4 shape(key.shapes[drawable.item]);
-        const auto count = static_cast<std::uint32_t>(drawable.primitive().indices.size() / 3);
-        for (std::uint32_t i = 0; i < count; ++i) {
+        const PlacedMesh mesh{.drawn = *drawable.drawn,
+                              .vertices = drawable.primitive().vertices,
+                              .matrix = glm::mat4(key.shapes[drawable.item]),
+                              .mirrored = layout.geometry.items[drawable.item].mirrored};
+        for (std::uint32_t i = 0; i < mesh.count(); ++i) {
             const auto id = static_cast<std::uint32_t>(scene.triangles.size());
-            scene.triangles.push_back(trace_triangle(layout, drawable, vertices, i, shape, id));
+            scene.triangles.push_back(mesh.traced(i, id));
             if (!has_second_emission(*drawable.primitive().material)) continue;
-            scene.second_emission[id] = {trace_second_uvs(layout, drawable, i),
+            scene.second_emission[id] = {mesh.second_uvs(i),
                                          drawable.primitive().material->base_colour_texture};
         }
-        scene.item_of.insert(scene.item_of.end(), count, drawable.item);
+        scene.item_of.insert(scene.item_of.end(), mesh.count(), drawable.item);
     });
     return scene;
 }
@@ -158,11 +159,10 @@ class Deformer {
         const auto index = static_cast<std::size_t>(next - first_triangles_.begin()) - 1;
         const SceneLayout::Drawable& drawable = layout_.drawables[solids_[index]];
         const std::uint32_t i = point.triangle - first_triangles_[index];
-        const auto triangle_of = [&](std::span<const Vertex> vertices) {
-            return place_triangle(layout_, drawable, vertices, i, placement_.world[drawable.item]);
-        };
-        const Triangle in_mesh = triangle_of(drawable.primitive().vertices);
-        const Triangle t = triangle_of(vertices_of(drawable, placement_.deformed));
+        PlacedMesh mesh = candela::placed_in_world(layout_, drawable, placement_);
+        const Triangle t = mesh.triangle(i);
+        mesh.vertices = drawable.primitive().vertices;
+        const Triangle in_mesh = mesh.triangle(i);
         const glm::vec3 cross = glm::cross(t.b - t.a, t.c - t.a);
         const float size = glm::length(cross);
         const glm::vec3 front = size > 0.0F ? cross / size : glm::vec3(0.0F);

@@ -40,19 +40,18 @@ InView in_view(const Box& box, const glm::mat4& clip_from_box) {
 
 std::vector<std::uint32_t> SeenObjects::update(const KeptTop& top, std::size_t count,
                                                const glm::mat4& clip_from_world) {
-    counts_.resize(std::max(count, counts_.size()));
-    seen_.resize(counts_.size());
+    seen_.resize(std::max(count, seen_.size()));
+    told_.resize(seen_.size());
     follow(top);
     const bool same_view = std::exchange(clip_from_world_, clip_from_world) == clip_from_world;
-    if (!top.top().bvh.nodes.empty()) visit(top.top(), 0, InView::partly, same_view);
+    if (!top.tree().nodes.empty()) visit(top.tree(), 0, InView::partly, same_view);
 
     std::ranges::sort(touched_);
     touched_.erase(std::unique(touched_.begin(), touched_.end()), touched_.end());
     std::vector<std::uint32_t> changed;
     for (const std::uint32_t object : std::exchange(touched_, {})) {
-        const bool now = counts_[object] > 0;
-        if (seen_[object] != now) changed.push_back(object);
-        seen_[object] = now;
+        if (told_[object] != seen_[object]) changed.push_back(object);
+        told_[object] = seen_[object];
     }
     return changed;
 }
@@ -61,19 +60,17 @@ std::vector<std::uint32_t> SeenObjects::update(const KeptTop& top, std::size_t c
 void SeenObjects::follow(const KeptTop& top) {
     const auto edits = top.edits_since(revision_);
     revision_ = top.revision();
+    states_.resize(top.tree().nodes.size(), std::nullopt);
     if (!edits) {
-        for (std::uint32_t leaf = 0; leaf < leaves_.size(); ++leaf) set_seen(leaf, 0, false);
-        states_.assign(top.top().bvh.nodes.size(), std::nullopt);
-        leaves_.resize(top.top().leaves.size());
+        for (std::uint32_t object = 0; object < seen_.size(); ++object) set_seen(object, false);
+        std::ranges::fill(states_, std::nullopt);
         return;
     }
-    states_.resize(top.top().bvh.nodes.size(), std::nullopt);
-    leaves_.resize(top.top().leaves.size());
     for (const KeptTop::Edit& edit : *edits) {
         if (edit.kind == KeptTop::Edit::Kind::node) {
             forget(top, edit.index);
         } else {
-            set_seen(edit.index, 0, false);
+            set_seen(edit.index, false);
         }
     }
 }
@@ -87,28 +84,20 @@ void SeenObjects::forget(const KeptTop& top, std::uint32_t node) {
     }
 }
 
-void SeenObjects::visit(const TopBvh& top, std::uint32_t node, InView above, bool same_view) {
-    const BvhNode& box = top.bvh.nodes[node];
+void SeenObjects::visit(const Bvh& top, std::uint32_t node, InView above, bool same_view) {
+    const BvhNode& box = top.nodes[node];
     const InView now = above == InView::partly ? in_view({box.lower, box.upper}, clip_from_world_) : above;
     const std::optional<InView> before = std::exchange(states_[node], now);
     if (now == before && (same_view || now != InView::partly)) return;
-    if (box.count == 0) {
-        visit(top, box.first, now, same_view);
-        visit(top, box.first + 1, now, same_view);
-        return;
-    }
-    const std::uint32_t leaf = top.bvh.order[box.first];
-    set_seen(leaf, top.leaves[leaf].object, now != InView::outside);
+    if (box.count > 0) return set_seen(box.first, now != InView::outside);
+    visit(top, box.first, now, same_view);
+    visit(top, box.first + 1, now, same_view);
 }
 
-/// `object`: which has the leaf, if it is seen.
-void SeenObjects::set_seen(std::uint32_t leaf, std::uint32_t object, bool is_seen) {
-    Leaf& changed = leaves_[leaf];
-    if (changed.is_seen == is_seen) return;
-    changed.is_seen = is_seen;
-    if (is_seen) changed.object = object;
-    counts_[changed.object] += is_seen ? 1U : ~0U;
-    touched_.push_back(changed.object);
+void SeenObjects::set_seen(std::uint32_t object, bool is_seen) {
+    if (seen_[object] == is_seen) return;
+    seen_[object] = is_seen;
+    touched_.push_back(object);
 }
 
 }  // namespace candela

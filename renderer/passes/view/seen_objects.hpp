@@ -34,23 +34,17 @@ class SeenObjects {
     [[nodiscard]] bool sees(std::uint32_t object) const { return seen_[object]; }
 
  private:
-    struct Leaf {
-        std::uint32_t object = 0;
-        bool is_seen = false;
-    };
-
     void follow(const KeptTop& top);
     void forget(const KeptTop& top, std::uint32_t node);
     /// `above`: of the node that contains this one. `same_view`: all that is known is still so.
-    void visit(const TopBvh& top, std::uint32_t node, InView above, bool same_view);
-    void set_seen(std::uint32_t leaf, std::uint32_t object, bool is_seen);
+    void visit(const Bvh& top, std::uint32_t node, InView above, bool same_view);
+    void set_seen(std::uint32_t object, bool is_seen);
 
     /// By node of the top; nullopt: unknown. What contains an unknown node is unknown, too.
     std::vector<std::optional<InView>> states_;
-    std::vector<Leaf> leaves_;            // by leaf of the top
-    std::vector<std::uint32_t> counts_;   // by object: how many of its leaves are seen
     std::vector<bool> seen_;              // by object
-    std::vector<std::uint32_t> touched_;  // objects with leaves that have come into view or left it
+    std::vector<bool> told_;              // by object: whether it is seen, by what was returned
+    std::vector<std::uint32_t> touched_;  // objects that have come into view or left it, or both
     // Of the last call.
     std::uint64_t revision_ = 0;  // of the top
     glm::mat4 clip_from_world_{0.0F};

@@ -75,7 +75,7 @@ struct BufferDesc {
 
 /// How a pass accesses a GPU resource. Whether it reads or writes follows from `Pass::read` or `Pass::write`.
 enum class Usage : std::uint8_t {
-    sampled,        ///< read: texture fetches
+    sampled,        ///< read: texture fetches; of a buffer: of its texels of four 32-bit words each
     storage,        ///< read or write: shader storage buffer or image; writes are incoherent (need barriers)
     uniform,        ///< read: uniform buffer
     vertex,         ///< read: vertex attributes

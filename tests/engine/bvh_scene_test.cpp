@@ -1,7 +1,6 @@
-#include "engine/bvh/two_level.hpp"
-
 #include <algorithm>
 #include <array>
+#include <bit>
 #include <cmath>
 #include <numeric>
 #include <span>
@@ -9,6 +8,7 @@
 #include <vector>
 
 #include <doctest/doctest.h>
+#include <glm/gtc/matrix_transform.hpp>
 #include <glm/vector_relational.hpp>
 
 #include "engine/bvh/kept_top.hpp"
@@ -23,25 +23,25 @@ namespace {
 using namespace candela;
 using namespace candela::test;
 
-/// Objects with hierarchies of their own under one top, as the renderer keeps them.
+/// Instances of meshes under one top, as the renderer keeps them. Each has its own mesh, in world space.
 class Objects {
  public:
     void add(Triangles triangles) {
-        objects_.push_back({std::move(triangles), {}, next_node_, next_triangle_});
-        objects_.back().bvh = build_bvh(objects_.back().triangles, object_max_depth);
-        next_node_ += static_cast<std::uint32_t>(objects_.back().bvh.nodes.size()) + 5;
-        next_triangle_ += static_cast<std::uint32_t>(objects_.back().bvh.order.size()) + 3;
-        top_.insert(placed_objects(), static_cast<std::uint32_t>(objects_.size() - 1));
-        keep_or_build();
+        objects_.push_back({std::move(triangles), {}, {next_node_, next_triangle_}});
+        Object& added = objects_.back();
+        added.bvh = build_bvh(added.triangles, mesh_max_depth);
+        next_node_ += static_cast<std::uint32_t>(added.bvh.nodes.size()) + 5;
+        next_triangle_ += static_cast<std::uint32_t>(added.bvh.order.size()) + 3;
+        set(objects_.size() - 1);
     }
     void remove(std::size_t i) {
         // The last one takes its number.
-        const auto last = static_cast<std::uint32_t>(objects_.size() - 1);
-        top_.remove(static_cast<std::uint32_t>(i));
-        top_.remove(last);
+        const std::size_t last = objects_.size() - 1;
+        top_.set(static_cast<std::uint32_t>(i), {});
+        top_.set(static_cast<std::uint32_t>(last), {});
         objects_[i] = objects_.back();
         objects_.pop_back();
-        if (i < last) top_.insert(placed_objects(), static_cast<std::uint32_t>(i));
+        if (i < last) return set(i);
         keep_or_build();
     }
     template <class Change>
@@ -50,13 +50,12 @@ class Objects {
             t = {change(t.a), change(t.b), change(t.c)};
         }
         refit(objects_[i].bvh, objects_[i].triangles);
-        top_.refit(placed_objects(), std::array{static_cast<std::uint32_t>(i)});
-        keep_or_build();
+        set(i);
     }
     /// Whether the top is kept where it may be, instead of being built again each time.
     bool keeps = false;
     [[nodiscard]] int kept() const { return kept_; }
-    [[nodiscard]] const Bvh& top() const { return top_.top().bvh; }
+    [[nodiscard]] const Bvh& top() const { return top_.tree(); }
 
     [[nodiscard]] std::size_t size() const { return objects_.size(); }
     [[nodiscard]] Triangles triangles() const {
@@ -69,24 +68,21 @@ class Objects {
 
     /// All as one hierarchy over `triangles`, with gaps between the objects' nodes.
     [[nodiscard]] Bvh joint() const {
-        const std::vector<PlacedBvh> objects = placed_objects();
-        const auto placed = [](const PlacedBvh& object, BvhNode node) {
-            node.first += node.count == 0 ? object.first_node - 1 : object.first_triangle;
+        const auto placed = [](const Object& object, BvhNode node) {
+            node.first += node.count == 0 ? object.place.first_node - 1 : object.place.first_triangle;
             return node;
         };
-        const TopBvh& top = top_.top();
-        Bvh bvh{top.bvh.nodes, joint_order()};
+        Bvh bvh{top().nodes, joint_order()};
         for (BvhNode& node : bvh.nodes) {
             if (node.count == 0) continue;
-            const TopBvh::Leaf& leaf = top.leaves[top.bvh.order[node.first]];
-            node = placed(objects[leaf.object], objects_[leaf.object].bvh.nodes[leaf.node]);
+            const Object& object = objects_[node.first];
+            node = placed(object, object.bvh.nodes.front());
         }
-        for (std::size_t i = 0; i < objects_.size(); ++i) {
-            const Bvh& own = objects_[i].bvh;
-            for (std::size_t n = 1; n < own.nodes.size(); ++n) {
-                const std::size_t at = objects[i].first_node + n - 1;
+        for (const Object& object : objects_) {
+            for (std::size_t n = 1; n < object.bvh.nodes.size(); ++n) {
+                const std::size_t at = object.place.first_node + n - 1;
                 bvh.nodes.resize(std::max(bvh.nodes.size(), at + 1));
-                bvh.nodes[at] = placed(objects[i], own.nodes[n]);
+                bvh.nodes[at] = placed(object, object.bvh.nodes[n]);
             }
         }
         return bvh;
@@ -94,79 +90,79 @@ class Objects {
 
     /// The same with wide nodes, as the GPU has them.
     [[nodiscard]] Wide wide() const {
-        const std::vector<PlacedBvh> objects = placed_objects();
-        Wide all{wide_nodes(top_.top(), objects), joint_order()};
-        for (const PlacedBvh& object : objects) {
-            const std::vector<WideNode> own = wide_nodes(object);
-            all.nodes.resize(std::max(all.nodes.size(), object.first_node + own.size()));
-            std::ranges::copy(own, all.nodes.begin() + object.first_node);
+        Wide all{top_nodes(top(), first_instance), joint_order()};
+        all.nodes.resize(first_instance);
+        for (const Object& object : objects_) {
+            const bool is_empty = object.bvh.nodes.empty();
+            const std::uint32_t root = is_empty ? 0 : root_word(object.bvh, object.place);
+            all.nodes.push_back(instance_node(glm::mat4(1.0F), root, 0));
+        }
+        for (const Object& object : objects_) {
+            const std::vector<WideNode> own = wide_nodes(object.bvh, object.place);
+            all.nodes.resize(std::max(all.nodes.size(), object.place.first_node + own.size()));
+            std::ranges::copy(own, all.nodes.begin() + object.place.first_node);
         }
         return all;
     }
-
-    std::uint32_t most_opened = 1024;
 
  private:
     struct Object {
         Triangles triangles;
         Bvh bvh;
-        std::uint32_t first_node;
-        std::uint32_t first_triangle;
+        MeshPlace place;
     };
+    static constexpr std::uint32_t first_instance = 2000;  // behind the nodes of the top
+
+    [[nodiscard]] static Box box_of(const Object& object) {
+        if (object.bvh.nodes.empty()) return {};
+        return {object.bvh.nodes.front().lower, object.bvh.nodes.front().upper};
+    }
+
+    void set(std::size_t i) {
+        top_.set(static_cast<std::uint32_t>(i), box_of(objects_[i]));
+        keep_or_build();
+    }
 
     void keep_or_build() {
         if (keeps && !top_.is_worn()) {
             ++kept_;
         } else {
-            top_.build(placed_objects(), most_opened);
+            std::vector<Box> boxes;
+            for (const Object& object : objects_) boxes.push_back(box_of(object));
+            top_.build(boxes);
         }
         check_changed();
     }
 
     /// The wide nodes that are said to have changed are all that have.
     void check_changed() {
-        const std::vector<PlacedBvh> objects = placed_objects();
-        const std::vector<WideNode> now = wide_nodes(top_.top(), objects);
+        const std::vector<WideNode> now = top_nodes(top(), first_instance);
         if (const auto changed = top_.take_changed()) {
             top_nodes_.resize(now.size());
-            for (const std::uint32_t i : *changed) top_nodes_[i] = wide_node_at(top_.top(), objects, i);
+            for (const std::uint32_t i : *changed) top_nodes_[i] = top_node(top(), first_instance, i);
         } else {
             top_nodes_ = now;
         }
-        const auto same = [](const WideNode& a, const WideNode& b) {
-            return a.origin == b.origin && a.exponents == b.exponents && a.lower == b.lower &&
-                   a.upper == b.upper && a.children == b.children;
-        };
         std::size_t missed = 0;
         for (std::size_t i = 0; i < now.size(); ++i) {
-            const std::vector<BvhNode>& nodes = top_.top().bvh.nodes;
+            const std::vector<BvhNode>& nodes = top().nodes;
             const bool is_used = nodes.size() < 3 || !is_unused(nodes[2 * i + 1]);
-            missed += is_used && !same(now[i], top_nodes_[i]) ? 1 : 0;
+            missed += is_used && now[i] != top_nodes_[i] ? 1 : 0;
         }
         CHECK(missed == 0);
     }
 
-    [[nodiscard]] std::vector<PlacedBvh> placed_objects() const {
-        std::vector<PlacedBvh> placed;
-        for (const Object& object : objects_) {
-            placed.push_back({&object.bvh, object.first_node, object.first_triangle});
-        }
-        return placed;
-    }
-
     /// Indices of `triangles()` by place in the joint array.
     [[nodiscard]] std::vector<std::uint32_t> joint_order() const {
-        const std::vector<PlacedBvh> objects = placed_objects();
         std::vector<std::uint32_t> order;
         std::uint32_t first_index = 0;
-        for (std::size_t i = 0; i < objects_.size(); ++i) {
-            const Bvh& own = objects_[i].bvh;
-            for (std::size_t n = 0; n < own.order.size(); ++n) {
-                const std::size_t at = objects[i].first_triangle + n;
+        for (const Object& object : objects_) {
+            for (std::size_t n = 0; n < object.bvh.order.size(); ++n) {
+                const std::size_t at = object.place.first_triangle + n;
                 order.resize(std::max(order.size(), at + 1));
-                order[at] = first_index + own.order[n];
+                order[at] = first_index + object.bvh.order[n];
             }
-            first_index += static_cast<std::uint32_t>(own.order.size());
+            first_index += static_cast<std::uint32_t>(object.bvh.order.size());
         }
         return order;
     }
@@ -175,7 +171,7 @@ class Objects {
     KeptTop top_;
     std::vector<WideNode> top_nodes_;  // kept by what take_changed says
     int kept_ = 0;
-    std::uint32_t next_node_ = 4000;  // behind those of the top
+    std::uint32_t next_node_ = 4000;  // behind the instances
     std::uint32_t next_triangle_ = 3;
 };
 
@@ -227,15 +223,11 @@ void check_wide(const Wide& wide, std::span<const Triangle> triangles) {
     CHECK(escaped == 0);
 }
 
-TEST_CASE("bvh: two levels: hits equal brute force after each of many moves, additions and removals") {
+TEST_CASE("bvh: scene: hits equal brute force after each of many moves, additions and removals") {
     Random random(test_seed(13));
-    for (const std::uint32_t variant : {0U, 1U, 2U, 3U, 4U, 5U}) {
-        const std::uint32_t most_opened = std::array{0U, 5U, 1024U}[variant % 3];
-        const bool keeps = variant >= 3;
-        CAPTURE(most_opened);
+    for (const bool keeps : {false, true, true}) {
         CAPTURE(keeps);
         Objects objects;
-        objects.most_opened = most_opened;
         objects.keeps = keeps;
         for (int edit = 0; edit < 60; ++edit) {
             const auto any =
@@ -262,11 +254,10 @@ TEST_CASE("bvh: two levels: hits equal brute force after each of many moves, add
     }
 }
 
-TEST_CASE("bvh: two levels: a top is kept through hundreds of edits, and rays hardly cost more") {
+TEST_CASE("bvh: scene: a top is kept through hundreds of edits, and rays hardly cost more") {
     Random random(test_seed(16));
     Objects objects;
     objects.keeps = true;
-    objects.most_opened = 0;
     const auto add = [&] {
         const glm::vec3 by = random.point(10.0F);
         Triangles triangles = soup(4, 0.3F, random);
@@ -301,11 +292,10 @@ TEST_CASE("bvh: two levels: a top is kept through hundreds of edits, and rays ha
     CHECK(kept <= 2.0F * sah_cost(objects.top()));
 }
 
-TEST_CASE("bvh: two levels: things that come in rows do not make the top deep or expensive") {
+TEST_CASE("bvh: scene: things that come in rows do not make the top deep or expensive") {
     Random random(test_seed(18));
     Objects objects;
     objects.keeps = true;
-    objects.most_opened = 0;
     for (int i = 0; i < 400; ++i) {
         const glm::vec3 at(i % 20, 0.0F, i / 20);
         Triangles triangles = soup(4, 0.3F, random);
@@ -320,7 +310,7 @@ TEST_CASE("bvh: two levels: things that come in rows do not make the top deep or
     CHECK(kept < 1.3F * sah_cost(objects.top()));
 }
 
-TEST_CASE("bvh: two levels: of objects in the same place the first one is hit") {
+TEST_CASE("bvh: scene: of objects in the same place the first one is hit") {
     Random random(10);
     const Triangles originals = soup(40, 0.4F, random);
     Objects objects;
@@ -332,8 +322,8 @@ TEST_CASE("bvh: two levels: of objects in the same place the first one is hit") 
     CHECK(disagreements(objects.wide(), triangles, 2000, random) == 0);
 }
 
-TEST_CASE("bvh: two levels: no input exceeds the bound on depth") {
-    CHECK(build_bvh(geometric_progression(1), object_max_depth).depth == object_max_depth);
+TEST_CASE("bvh: scene: no input exceeds the bound on depth") {
+    CHECK(build_bvh(geometric_progression(1), mesh_max_depth).depth == mesh_max_depth);
     Objects objects;
     for (int i = 0; i < 4; ++i) {
         objects.add(geometric_progression(1));
@@ -343,12 +333,11 @@ TEST_CASE("bvh: two levels: no input exceeds the bound on depth") {
     // As deep as possible in both levels: single triangles around a small, deep object, which is at the
     // deepest place of the top.
     Objects nested;
-    nested.most_opened = 0;
     nested.add(geometric_progression(1, -149, -61));
     for (const Triangle& triangle : geometric_progression(1, -60, 60)) {
         nested.add({triangle});
     }
-    CHECK(check_joint(nested.joint(), nested.triangles()) > object_max_depth);
+    CHECK(check_joint(nested.joint(), nested.triangles()) > mesh_max_depth);
     check_wide(nested.wide(), nested.triangles());
 }
 
@@ -396,6 +385,20 @@ TEST_CASE("bvh: wide: NaN and infinite vertices do not hide other triangles") {
     Objects objects;
     objects.add(triangles);
     CHECK(disagreements(objects.wide(), triangles, 1000, random) == 0);
+}
+
+TEST_CASE("bvh: wide: an instance is the matrix that leads into its mesh's space, its root and its entity") {
+    const glm::mat4 matrix =
+        glm::translate(glm::rotate(glm::mat4(2.0F), 0.3F, glm::vec3(1, 2, 3)), glm::vec3(4, 5, 6));
+    const WideNode node = instance_node(matrix, child_word(7, 3), 9);
+    const auto row = [](const glm::uvec4& bits) { return std::bit_cast<glm::vec4>(bits); };
+    const glm::vec4 first(node.origin, std::bit_cast<float>(node.exponents));
+    const glm::vec4 place(-1, 0.5F, 3, 1);
+    const glm::vec3 in_mesh(glm::dot(first, place), glm::dot(row(node.lower), place),
+                            glm::dot(row(node.upper), place));
+    // A few roundings of numbers below 32.
+    CHECK(glm::all(glm::lessThan(glm::abs(in_mesh - glm::vec3(matrix * place)), glm::vec3(1e-5F))));
+    CHECK(node.children == glm::uvec4(child_word(7, 3), 9, 0, 0));
 }
 
 TEST_CASE("bvh: wide: a box is hardly larger than what it contains") {
