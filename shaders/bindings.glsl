@@ -59,7 +59,7 @@
 // Passes that expose the picture read no other buffer.
 #define BINDING_EXPOSURE BINDING_INSTANCES
 
-#define MOST_STORAGE_BLOCKS 11  // of a program: blended surfaces, with light lists, surfels and rays
+#define MOST_STORAGE_BLOCKS 9  // of a program: blended surfaces, with light lists, surfels and rays
 
 #define UNIFORMS_VIEW 0
 #define UNIFORMS_CELLS 1
@@ -79,11 +79,14 @@
 #define UNIT_VPL_SLOPES 8
 #define UNIT_BVH_NODES 9
 #define UNIT_TRIANGLES 10
-#define UNIT_MIRROR_SHARES 11
-#define UNIT_INDIRECT 12
-#define UNIT_BUMPS 13
-#define UNIT_MIRRORED_ALBEDO 14
-#define UNIT_LAST 14
+#define UNIT_LIT_SURFELS 11
+#define UNIT_LIT_POINTS 12
+#define UNIT_MIRROR_SHARES 13
+#define UNIT_INDIRECT 14
+#define UNIT_BUMPS 15
+#define UNIT_LAST 15
+// A frame has traced VPLs or surfels.
+#define UNIT_TRACED_VPLS UNIT_LIT_SURFELS
 // Passes that draw meshes read no G-buffer.
 #define UNIT_EMISSION UNIT_ALBEDO
 #define UNIT_SKY UNIT_INDIRECT
@@ -95,9 +98,10 @@
 #define UNIT_INDIRECT_DIRECTION UNIT_VPL_MAPS
 // Passes that shade read no picture.
 #define UNIT_GLOSS UNIT_RADIANCE
-// Passes that draw blended surfaces read nothing that mirrors have found.
-#define UNIT_PART UNIT_MIRRORED_ALBEDO
+// Passes that add blended surfaces read no G-buffer.
+#define UNIT_PART UNIT_BUMPS
 // Passes that show what mirrors have found light nothing.
+#define UNIT_MIRRORED_ALBEDO UNIT_LIT_SURFELS
 #define UNIT_SKY_TREE UNIT_VPL_MAPS
 #define UNIT_MIRRORED_PLACE UNIT_SHADOW_CUBES
 #define UNIT_MIRRORED_NORMAL UNIT_SHADOW_MAPS

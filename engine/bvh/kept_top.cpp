@@ -142,7 +142,8 @@ void KeptTop::link(std::uint32_t node) {
     }
 }
 
-/// The node that becomes the sibling of a new box: that for which boxes grow least, the new parent's included.
+/// The node that becomes the sibling of a new box: that for which boxes grow least, the new parent's
+/// included.
 std::uint32_t KeptTop::neighbour_for(const Box& box) const {
     // What a new parent of the node and the box costs, or one of the node and so on below it.
     const auto below = [&](std::uint32_t child) {

@@ -141,8 +141,7 @@ std::vector<WideNode> wide_nodes(const Bvh& mesh, const MeshPlace& place) {
     std::vector<WideNode> wide;
     wide.reserve(mesh.nodes.size() / 2);
     for (std::uint32_t first = 1; first < mesh.nodes.size(); first += 2) {
-        wide.push_back(
-            widened(mesh, first, [&](const BvhNode& node) { return word_in_mesh(node, place); }));
+        wide.push_back(widened(mesh, first, [&](const BvhNode& node) { return word_in_mesh(node, place); }));
     }
     return wide;
 }
@@ -157,7 +156,8 @@ std::vector<WideNode> top_nodes(const Bvh& top, std::uint32_t first_instance) {
     if (top.nodes.empty()) return {wide_node({})};
     if (top.nodes.size() == 1) {
         const BvhNode& only = top.nodes.front();
-        return {wide_node(std::array{WideChild{{only.lower, only.upper}, word_in_top(only, first_instance)}})};
+        return {
+            wide_node(std::array{WideChild{{only.lower, only.upper}, word_in_top(only, first_instance)}})};
     }
     std::vector<WideNode> wide;
     wide.reserve(top.nodes.size() / 2);

@@ -15,13 +15,13 @@
 
 namespace candela {
 
-// A scene's hierarchy as the GPU reads it, in one array of nodes: a top over instances, the instances, and the
-// hierarchies of meshes, each in the space of its mesh. A mesh is there once, however many instances it has;
-// when an instance moves, only its own node and the top change.
+// A scene's hierarchy as the GPU reads it, in one array of nodes: a top over instances, the instances, and
+// the hierarchies of meshes, each in the space of its mesh. A mesh is there once, however many instances it
+// has; when an instance moves, only its own node and the top change.
 
 /// Node with up to four children (std430, 64 bytes). After Ylitie, Karras and Laine, "Efficient Incoherent
-/// Ray Traversal on GPUs Through Compressed Wide BVHs" (2017): the children's boxes are given by whole numbers
-/// of steps from a corner, rounded outwards. Instances take the same bytes: see instance_node.
+/// Ray Traversal on GPUs Through Compressed Wide BVHs" (2017): the children's boxes are given by whole
+/// numbers of steps from a corner, rounded outwards. Instances take the same bytes: see instance_node.
 struct WideNode {
     glm::vec3 origin{0.0F};       ///< lower corner of the box around all children, metres
     std::uint32_t exponents = 0;  ///< steps along x, y and z in metres: 8 bits of a float's exponent each

@@ -106,9 +106,9 @@ class Buffer : public Object {
     void write(std::span<const std::byte> data, std::uint64_t offset);
 };
 
-/// A buffer as shaders fetch it from a texture unit (usamplerBuffer): texels of four 32-bit words each. Drivers
-/// without branches, such as llvmpipe, fetch texels faster than the elements of storage blocks where the
-/// invocations of a group read different ones.
+/// A buffer as shaders fetch it from a texture unit (usamplerBuffer): texels of four 32-bit words each.
+/// Drivers without branches, such as llvmpipe, fetch texels faster than the elements of storage blocks where
+/// the invocations of a group read different ones.
 class BufferTexels : public Object {
  public:
     BufferTexels() = default;

@@ -50,6 +50,14 @@ struct DrawCommand {
     bool operator==(const DrawCommand&) const = default;
 };
 
+/// Whether shaders can fetch a buffer of these structs as so many texels each: BufferTexels.
+template <class T>
+constexpr bool has_texels(std::size_t count) {
+    return sizeof(T) == count * sizeof(glm::uvec4);
+}
+static_assert(has_texels<WideNode>(4) && has_texels<TraceTriangle>(6) && has_texels<TracedVpl>(5) &&
+              has_texels<LitSurfel>(5) && has_texels<LitPoint>(3));
+
 static_assert(BVH_STACK_SIZE >= wide_stack_size && INSTANCE_CHILD == instance_child);
 
 }  // namespace candela::gpu

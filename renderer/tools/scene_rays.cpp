@@ -26,7 +26,6 @@
 #include "engine/bvh/box.hpp"
 #include "engine/bvh/bvh.hpp"
 #include "engine/bvh/traverse.hpp"
-#include "engine/bvh/box.hpp"
 #include "engine/bvh/wide.hpp"
 #include "engine/scene/check.hpp"
 

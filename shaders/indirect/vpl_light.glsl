@@ -15,7 +15,16 @@
 
 #ifndef SURFELS
 
-layout(std430, binding = BINDING_TRACED_VPLS) readonly restrict buffer TracedVpls { TracedVpl traced_vpls[]; };
+layout(binding = UNIT_TRACED_VPLS) uniform usamplerBuffer traced_vpl_texels;
+
+TracedVpl traced_vpl_at(uint index) {
+    uvec4 words[5];
+    for (int i = 0; i < 5; ++i) {
+        words[i] = texelFetch(traced_vpl_texels, 5 * int(index) + i);
+    }
+    return TracedVpl(uintBitsToFloat(words[0].xyz), words[0].w, uintBitsToFloat(words[1].xyz), uintBitsToFloat(words[1].w),
+                     uintBitsToFloat(words[2].xyz), 0.0, uintBitsToFloat(words[3].xyz), 0.0, uintBitsToFloat(words[4].xyz), 0.0);
+}
 
 const float CREASE_SLACK = 16.0;  // ray offsets: a receiver this little behind a VPL's plane counts as in front of it
 
@@ -50,7 +59,7 @@ vec3 irradiance_from_traced(uint index, TracedVpl vpl, VplPose pose, Surface sur
 // Adds π times the irradiance from the VPL of that index. Loops over the surfaces inside, so that it is fetched, and the
 // frame of its map made, once.
 void add_vpl(uint index, Surface surfaces[SURFACES], inout Gathered gathered[SURFACES]) {
-    TracedVpl vpl = traced_vpls[index];
+    TracedVpl vpl = traced_vpl_at(index);
     VplPose pose = vpl_pose(vpl.position, vpl.normal, index);
     for (int s = 0; s < SURFACES; ++s) {
         vec3 irradiance = irradiance_from_traced(index, vpl, pose, surfaces[s]);
@@ -60,8 +69,27 @@ void add_vpl(uint index, Surface surfaces[SURFACES], inout Gathered gathered[SUR
 
 #else
 
-layout(std430, binding = BINDING_LIT_SURFELS) readonly restrict buffer LitSurfels { LitSurfel lit_surfels[]; };
-layout(std430, binding = BINDING_LIT_POINTS) readonly restrict buffer LitPoints { LitPoint lit_points[]; };
+layout(binding = UNIT_LIT_SURFELS) uniform usamplerBuffer lit_surfel_texels;
+layout(binding = UNIT_LIT_POINTS) uniform usamplerBuffer lit_point_texels;
+
+LitSurfel lit_surfel_at(uint index) {
+    uvec4 words[5];
+    for (int i = 0; i < 5; ++i) {
+        words[i] = texelFetch(lit_surfel_texels, 5 * int(index) + i);
+    }
+    return LitSurfel(uintBitsToFloat(words[0].xyz), words[0].w, uintBitsToFloat(words[1].xyz), words[1].w,
+                     uintBitsToFloat(words[2].xyz), uintBitsToFloat(words[2].w), uintBitsToFloat(words[3].xyz),
+                     uintBitsToFloat(words[3].w), uintBitsToFloat(words[4].x), words[4].y, uintBitsToFloat(words[4].z),
+                     uintBitsToFloat(words[4].w));
+}
+
+LitPoint lit_point_at(uint index) {
+    vec4 words[3];
+    for (int i = 0; i < 3; ++i) {
+        words[i] = uintBitsToFloat(texelFetch(lit_point_texels, 3 * int(index) + i));
+    }
+    return LitPoint(words[0].xyz, words[0].w, words[1].xyz, words[1].w, words[2].xyz, words[2].w);
+}
 
 // disc_term at a visible surface.
 float disc_term_at(Surface surface, vec3 position, vec3 normal, float radius2) {
@@ -72,7 +100,7 @@ float disc_term_at(Surface surface, vec3 position, vec3 normal, float radius2) {
 vec3 unoccluded_from_points(uint first, uint count, Surface surface) {
     vec3 sum = vec3(0.0);
     for (uint i = first; i < first + count; ++i) {
-        LitPoint point = lit_points[i];
+        LitPoint point = lit_point_at(i);
         sum += point.flux * disc_term_at(surface, point.position, point.normal, point.area / PI);
     }
     return sum;
@@ -145,7 +173,7 @@ void add_group(LitSurfel group, Surface surfaces[SURFACES], inout Gathered gathe
     }
     if (most == 0.0) return;
     for (uint i = 0u; i < group.point_count; ++i) {
-        add_surfel(lit_surfels[group.first_point + i], of_each, surfaces, gathered);
+        add_surfel(lit_surfel_at(group.first_point + i), of_each, surfaces, gathered);
     }
 }
 
@@ -170,7 +198,7 @@ vec3 irradiance_from_emitter(LitEmitter emitter, Surface surface) {
     float most = 0.0;
     uint brightest = emitter.first_point;
     for (uint i = emitter.first_point; i < emitter.first_point + emitter.point_count; ++i) {
-        LitPoint point = lit_points[i];
+        LitPoint point = lit_point_at(i);
         vec3 light = point.flux * disc_term_at(surface, point.position, point.normal, point.area / PI);
         sum += light;
         if (dot(light, vec3(1.0)) <= most) continue;
@@ -178,7 +206,7 @@ vec3 irradiance_from_emitter(LitEmitter emitter, Surface surface) {
         brightest = i;
     }
     if (most == 0.0) return vec3(0.0);
-    return sum * visibility_of_emitter(emitter, lit_points[brightest], surface);
+    return sum * visibility_of_emitter(emitter, lit_point_at(brightest), surface);
 }
 
 #endif
@@ -207,7 +235,7 @@ void add_direction(inout Gathered gathered, uint direction, Surface surface) {
     vec3 towards = cosine_direction(face_normal(surface), sample_2d(place, 0u, 0u));
     vec3 origin = ray_origin(surface, vpl_constants.ray_offset);
     if (!is_surface(closest_hit(origin, towards, 0.0, INFINITY), towards)) return;
-    vec3 irradiance = PI / float(COVER_DIRECTIONS) * lit_surfels[vpl_constants.mean_record].flux;
+    vec3 irradiance = PI / float(COVER_DIRECTIONS) * lit_surfel_at(vpl_constants.mean_record).flux;
     add_gathered(gathered, irradiance, towards, surface);
 }
 
@@ -219,11 +247,11 @@ void add_direction(inout Gathered gathered, uint direction, Surface surface) {
 void add_vpl(uint index, Surface surfaces[SURFACES], inout Gathered gathered[SURFACES]) {
     if (index < vpl_constants.first_emitter) {
 #ifdef GROUPS
-        add_group(lit_surfels[vpl_constants.mapped + index], surfaces, gathered);
+        add_group(lit_surfel_at(vpl_constants.mapped + index), surfaces, gathered);
 #else
         float whole[SURFACES];
         for (int s = 0; s < SURFACES; ++s) whole[s] = 1.0;
-        add_surfel(lit_surfels[index], whole, surfaces, gathered);
+        add_surfel(lit_surfel_at(index), whole, surfaces, gathered);
 #endif
         return;
     }

@@ -360,11 +360,13 @@ TEST_CASE_FIXTURE(RenderFixture,
         }
         return barriers;
     };
-    // The first barrier of each waits for the previous frame, whose VPLs and radiance are overwritten.
+    // The first barrier of each waits for the previous frame, whose radiance is overwritten. Shaders fetch
+    // VPLs as texels; before the next frame stores others, storage is waited for where there is a barrier
+    // anyway.
     CHECK(barriers_of(ShadingPath::deferred) ==
-          "surfel-bounce: storage\ndeferred: image access + storage\n"
-          "transparent: texture fetch + framebuffer\n");
-    CHECK(barriers_of(ShadingPath::forward) == "surfel-bounce: storage\nforward: storage\n");
+          "surfel-bounce: storage\ndeferred: texture fetch + image access\n"
+          "transparent: texture fetch + framebuffer + storage\n");
+    CHECK(barriers_of(ShadingPath::forward) == "surfel-bounce: storage\nforward: texture fetch + storage\n");
 }
 
 }  // TEST_SUITE("configuration")

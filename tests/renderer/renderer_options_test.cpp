@@ -118,7 +118,7 @@ TEST_CASE("a context that does not suffice is one clear error") {
     auto context = make_current_context();
     const gl::GetProc proc = context->get_proc();
     CHECK_THROWS_WITH_AS(TestedRenderer{with_few_blocks(proc)},
-                         "the driver offers 8 storage blocks a program; Candela needs 11", gl::GlError);
+                         "the driver offers 8 storage blocks a program; Candela needs 9", gl::GlError);
     const auto lacking = [&](const char* name) {
         return std::strcmp(name, "glClipControl") == 0 ? nullptr : proc(name);
     };

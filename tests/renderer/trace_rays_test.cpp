@@ -181,8 +181,8 @@ class TraceRays : public GlFixture {
             REQUIRE(wanted.has_value() == std::isfinite(hits[i].t));
             if (!wanted) continue;
             ++hit_count;
-            // The corners were reconstructed from edges and the inverse matrix, with rounding. In the world, those
-            // of a mirrored mesh have another order.
+            // The corners were reconstructed from edges and the inverse matrix, with rounding. In the world,
+            // those of a mirrored mesh have another order.
             const auto near = [](glm::vec3 a, glm::vec3 b) { return glm::length(a - b) < 1e-5F; };
             const Triangle& t = triangles[wanted->triangle];
             const Triangle& found = hits[i].triangle;
@@ -240,7 +240,8 @@ TEST_CASE_FIXTURE(TraceRays, "hits of mirrored and sheared instances equal brute
         REQUIRE((nearest < rays[i].t_max) == std::isfinite(hits[i].t));
         if (!std::isfinite(hits[i].t)) continue;
         REQUIRE(std::abs(hits[i].t - nearest) <= 1e-5F * std::max(nearest, 1.0F));
-        // The front faces inwards, at a right angle to the triangle. Corners are within some hundred roundings.
+        // The front faces inwards, at a right angle to the triangle. Corners are within some hundred
+        // roundings.
         const Triangle& t = hits[i].triangle;
         const glm::vec3 front = glm::normalize(hits[i].front);
         CHECK(glm::dot(front, t.a) < 0.0F);

@@ -45,7 +45,7 @@ class CANDELA_API PointLighting {
     // binding points are in use.
     static constexpr std::uint32_t free_storage_bindings = 10;  ///< this, and three that follow
     static constexpr std::uint32_t free_uniform_bindings = 5;   ///< this, and all that follow
-    static constexpr std::uint32_t free_texture_units = 11;     ///< this, and all that follow
+    static constexpr std::uint32_t free_texture_units = 13;     ///< this, and all that follow
 
  private:
     struct Parts;

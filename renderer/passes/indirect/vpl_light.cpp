@@ -66,12 +66,12 @@ std::vector<std::string> vpl_light_variant(const VplLight& light) {
 namespace {
 
 void read_records(Pass& pass, const TracedVpls& traced) {
-    pass.read(traced.vpls, {Usage::storage, BINDING_TRACED_VPLS});
+    pass.read(traced.vpls, {Usage::sampled, UNIT_TRACED_VPLS});
 }
 
 void read_records(Pass& pass, const LitSurfels& lit) {
-    pass.read(lit.surfels, {Usage::storage, BINDING_LIT_SURFELS});
-    pass.read(lit.points, {Usage::storage, BINDING_LIT_POINTS});
+    pass.read(lit.surfels, {Usage::sampled, UNIT_LIT_SURFELS});
+    pass.read(lit.points, {Usage::sampled, UNIT_LIT_POINTS});
     if (lit.emitters) pass.read(*lit.emitters, {Usage::storage, BINDING_LIT_EMITTERS});
     if (lit.sky) pass.read(lit.sky->patches, {Usage::uniform, UNIFORMS_SKY});
 }

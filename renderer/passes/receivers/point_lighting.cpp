@@ -12,7 +12,7 @@ struct PointLighting::Parts {
 static_assert(PointLighting::free_storage_bindings > BINDING_LIT_POINTS &&
               PointLighting::free_storage_bindings + 3 < BINDING_LIT_EMITTERS);
 static_assert(PointLighting::free_uniform_bindings > UNIFORMS_LAST);
-static_assert(PointLighting::free_texture_units > UNIT_TRIANGLES);
+static_assert(PointLighting::free_texture_units > UNIT_LIT_POINTS);
 
 PointLighting make_point_lighting(const Gpu& gpu, const Lighting& lighting) {
     return PointLighting(std::make_shared<const PointLighting::Parts>(PointLighting::Parts{&gpu, lighting}));

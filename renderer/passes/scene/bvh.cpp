@@ -16,8 +16,8 @@
 namespace candela {
 namespace {
 
-/// The hierarchy, and where its parts lie in the buffers: the nodes of the top come first, then the instances,
-/// by object, then the nodes of meshes.
+/// The hierarchy, and where its parts lie in the buffers: the nodes of the top come first, then the
+/// instances, by object, then the nodes of meshes.
 struct UploadedHierarchy {
     SceneHierarchy scene;
     std::uint32_t room = 0;  // of the top, and of the instances: nodes
@@ -74,9 +74,9 @@ bool place(Execution& run, const HierarchyBuffers& buffers, UploadedHierarchy& u
     const bool no_room = make_room(uploaded);
     const auto which = no_room ? all_objects(scene) : scene.changed();
     const std::vector<MeshHierarchy*> meshes = scene.meshes_of(which);
-    const bool moved_triangles = place_ranges(run, buffers.triangles, uploaded.triangles,
-                                              ranges_of(meshes, &MeshHierarchy::triangles),
-                                              [&] { return all(&MeshHierarchy::triangles); });
+    const bool moved_triangles =
+        place_ranges(run, buffers.triangles, uploaded.triangles, ranges_of(meshes, &MeshHierarchy::triangles),
+                     [&] { return all(&MeshHierarchy::triangles); });
     const bool moved_nodes = place_ranges(
         run, buffers.nodes, uploaded.nodes, ranges_of(meshes, &MeshHierarchy::nodes),
         [&] { return all(&MeshHierarchy::nodes); }, 2 * uploaded.room);
@@ -155,8 +155,7 @@ void upload_top(const Gpu& gpu, Execution& run, const HierarchyBuffers& buffers,
 void upload_hierarchy(const Gpu& gpu, Execution& run, const HierarchyBuffers& buffers,
                       UploadedHierarchy& uploaded) {
     const bool all = place(run, buffers, uploaded);
-    const std::vector<std::uint32_t> which =
-        all ? all_objects(uploaded.scene) : uploaded.scene.changed();
+    const std::vector<std::uint32_t> which = all ? all_objects(uploaded.scene) : uploaded.scene.changed();
     upload_meshes(gpu, run, buffers, uploaded.scene.meshes_of(which));
     upload_instances(gpu, run, buffers, uploaded, which);
     upload_top(gpu, run, buffers, uploaded, all);

@@ -81,7 +81,8 @@ Box box_of(const SceneObject& object) {
 }  // namespace
 
 PlacedMesh MeshHierarchy::placed() const {
-    const std::vector<Vertex>& own = vertices ? (*vertices)[drawn->index_in_mesh] : drawn->primitive().vertices;
+    const std::vector<Vertex>& own =
+        vertices ? (*vertices)[drawn->index_in_mesh] : drawn->primitive().vertices;
     return {.drawn = *drawn, .vertices = own, .matrix = matrix, .mirrored = mirrored};
 }
 

@@ -52,9 +52,9 @@ struct SceneMetrics {
     }
 };
 
-/// The hierarchy over the triangles of a primitive, and its place on the GPU. All objects of a primitive share
-/// it. One that is deformed has its own, and so has one whose matrix has no good inverse, as of a flat one:
-/// this is in world space.
+/// The hierarchy over the triangles of a primitive, and its place on the GPU. All objects of a primitive
+/// share it. One that is deformed has its own, and so has one whose matrix has no good inverse, as of a flat
+/// one: this is in world space.
 struct MeshHierarchy {
     std::shared_ptr<const DrawnPrimitive> drawn;
     std::shared_ptr<const DeformedMesh::Vertices> vertices;  ///< null: those of the mesh
@@ -84,17 +84,18 @@ struct SceneObject {
     std::shared_ptr<const DrawnPrimitive> drawn;
     Source source{};
     std::shared_ptr<MeshHierarchy> mesh{};  ///< null: it is not made yet
-    glm::mat4 world_from_mesh{1.0F};        ///< leads from the space of the hierarchy's triangles to the world
-    glm::mat4 mesh_from_world{1.0F};        ///< its inverse
-    float area = 0.0F;                      ///< of the triangles in world space, one side each, m²
+    glm::mat4 world_from_mesh{1.0F};  ///< leads from the space of the hierarchy's triangles to the world
+    glm::mat4 mesh_from_world{1.0F};  ///< its inverse
+    float area = 0.0F;                ///< of the triangles in world space, one side each, m²
 
     /// Its triangles in world space.
     [[nodiscard]] PlacedMesh in_world() const;
 };
 
 /// The hierarchy over the triangles of all solid drawables, kept from frame to frame: a top over the objects
-/// (engine/bvh/kept_top.hpp), and a hierarchy of each mesh. What is deformed is refitted, and built again once
-/// its SAH cost exceeds 1.5 times that of the last build. An update takes no time for what has not changed.
+/// (engine/bvh/kept_top.hpp), and a hierarchy of each mesh. What is deformed is refitted, and built again
+/// once its SAH cost exceeds 1.5 times that of the last build. An update takes no time for what has not
+/// changed.
 class SceneHierarchy {
  public:
     /// Brings everything up to date with the scene. The ranges of what has changed are not `uploaded` then.

@@ -21,13 +21,13 @@ inline constexpr std::uint32_t triangles_per_part = 256;
 /// A primitive of a mesh, with what is the same wherever it is drawn.
 struct DrawnPrimitive {
     std::shared_ptr<const Mesh> mesh{};
-    std::uint32_t mesh_number = 0;    ///< in the MeshTable
-    std::uint32_t index_in_mesh = 0;  ///< of the primitive
+    std::uint32_t mesh_number = 0;     ///< in the MeshTable
+    std::uint32_t index_in_mesh = 0;   ///< of the primitive
     std::uint32_t first_triangle = 0;  ///< index in the mesh of the primitive's first triangle
-    std::uint32_t material = 0;       ///< index into SceneLayout::materials
-    Box bounds{};                     ///< bounding box, local space: see bounds_of
-    float albedo = 0.0F;              ///< strongest channel of its mean albedo
-    bool is_solid = true;             ///< opaque or masked: it stops light
+    std::uint32_t material = 0;        ///< index into SceneLayout::materials
+    Box bounds{};                      ///< bounding box, local space: see bounds_of
+    float albedo = 0.0F;               ///< strongest channel of its mean albedo
+    bool is_solid = true;              ///< opaque or masked: it stops light
     std::vector<Box>
         parts{};  ///< the boxes around its parts, local space: see parts_of. None for a single one.
 

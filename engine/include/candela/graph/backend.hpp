@@ -64,7 +64,8 @@ class CANDELA_API Backend {
     virtual void end_pass() = 0;
     /// Binds an object for the shaders of the pass that has begun, as its declaration says (see Binding).
     /// Called after begin_pass, and again if the pass replaces the object by `reserve`. A buffer with
-    /// Usage::indirect becomes the source of draw and dispatch arguments.
+    /// Usage::sampled is bound as texels of four 32-bit words; one with Usage::indirect becomes the source of
+    /// draw and dispatch arguments.
     virtual void bind_texture(ObjectId texture, const TextureDesc& desc, Binding binding) = 0;
     virtual void bind_buffer(ObjectId buffer, Binding binding) = 0;
     /// A hash of the whole content of an object that this back end created: equal for equal content, and
