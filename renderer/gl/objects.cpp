@@ -148,7 +148,8 @@ Buffer::Buffer(Device& device, std::string_view label, std::uint64_t size)
 
 BufferTexels::BufferTexels(Device& device, std::string_view label, const Buffer& buffer)
     : Object(device, ObjectKind::texture, create(device.gl().CreateTextures, GL_TEXTURE_BUFFER), label) {
-    const std::uint64_t texels = buffer.bytes() / sizeof(glm::uvec4);
+    constexpr std::uint64_t bytes_a_texel = 16;
+    const std::uint64_t texels = buffer.bytes() / bytes_a_texel;
     if (texels > device.limits().buffer_texels) {
         throw MemoryError(fmt::format("buffer \"{}\": {} texels, of which shaders of this driver reach {}",
                                       label, texels, device.limits().buffer_texels));

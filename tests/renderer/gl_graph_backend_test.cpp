@@ -82,6 +82,31 @@ TEST_CASE_FIXTURE(GlFixture, "objects are bound at their binding points") {
     backend.end_pass();
 }
 
+TEST_CASE_FIXTURE(GlFixture, "a buffer is bound as texels of four words each, as many as shaders can reach") {
+    GraphBackend backend(device);
+    const ObjectCounts before = device.live();
+    const ObjectId list = backend.create_buffer("list", {.count = 3, .stride = 48});
+    backend.bind_buffer(list, {Usage::sampled, 2});
+    device.gl().ActiveTexture(GL_TEXTURE2);
+    const auto texels = static_cast<GLuint>(get(device, GL_TEXTURE_BINDING_BUFFER));
+    const auto parameter = [&](GLenum what) {
+        GLint value = 0;
+        device.gl().GetTextureLevelParameteriv(texels, 0, what, &value);
+        return value;
+    };
+    CHECK(parameter(GL_TEXTURE_WIDTH) == 3 * 48 / 16);
+    CHECK(parameter(GL_TEXTURE_INTERNAL_FORMAT) == GL_RGBA32UI);
+    backend.destroy_buffer(list);
+    CHECK(device.live() == before);
+
+    Limits limits = device.limits();
+    limits.buffer_texels = 8;
+    device.pretend(limits);
+    const ObjectId large = backend.create_buffer("large", {.count = 3, .stride = 48});
+    CHECK_THROWS_WITH_AS(backend.bind_buffer(large, {Usage::sampled, 2}),
+                         "buffer \"large\": 9 texels, of which shaders of this driver reach 8", MemoryError);
+}
+
 TEST_CASE_FIXTURE(GlFixture, "a pass draws into its targets, from a known state") {
     GraphBackend backend(device);
     const std::array colours = {backend.create_texture("a", {.size = {4, 2}, .format = Format::r32f}),
