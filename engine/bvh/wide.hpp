@@ -64,7 +64,6 @@ struct WideChildren {
 struct MeshPlace {
     std::uint32_t first_node = 0;      ///< greater than 0
     std::uint32_t first_triangle = 0;  ///< place of the triangle Bvh::order[0]
-    bool operator==(const MeshPlace&) const = default;
 };
 /// A mesh's nodes, from `first_node` on: a wide node for each inner node of the hierarchy.
 [[nodiscard]] std::vector<WideNode> wide_nodes(const Bvh& mesh, const MeshPlace& place);

@@ -8,7 +8,6 @@ namespace candela {
 
 using detail::Access;
 using detail::Declaration;
-using detail::none;
 using detail::Resource;
 
 namespace {

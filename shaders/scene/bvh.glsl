@@ -32,7 +32,6 @@ struct Hit {
     uint triangle;     // in the triangle buffer
     uint id;           // of the triangle
     uint instance;     // node
-    uint entity;       // index, of the instance
 };
 
 const uint NO_TRIANGLE = 0xffffffffu;
@@ -63,7 +62,6 @@ struct LocalRay {
     vec3 direction;
     vec3 inverse;   // of the direction
     uint instance;  // node; 0: none, in world space
-    uint entity;    // index, of the instance
 };
 
 // The rows of the matrix that leads from the world to an instance's mesh.
@@ -72,7 +70,7 @@ vec4[3] mesh_from_world(WideNode instance) {
                    uintBitsToFloat(instance.upper));
 }
 
-// A normal of the triangle that was hit, in world space, of another length.
+// Turns a normal of the mesh that was hit to world space. The result is not normalised.
 vec3 to_world(Hit hit, vec3 normal) {
     vec4 rows[3] = mesh_from_world(node_at(hit.instance));
     return normal.x * rows[0].xyz + normal.y * rows[1].xyz + normal.z * rows[2].xyz;
@@ -80,8 +78,17 @@ vec3 to_world(Hit hit, vec3 normal) {
 
 vec3 to_mesh(vec4 rows[3], vec4 place) { return vec3(dot(rows[0], place), dot(rows[1], place), dot(rows[2], place)); }
 
-// Two-sided test of Möller and Trumbore (1997). Returns whether the triangle is hit before `hit`, or at equal distance
-// is that of the entity with the lower index, or of the same one with the lower id; then it becomes the hit.
+// Whether a triangle comes before the one that was hit at the same distance: its entity has the lower index, or is the same
+// and the triangle has the lower id. This does not depend on what has come and gone before.
+bool comes_first(uint instance, uint id, Hit hit) {
+    if (hit.triangle == NO_TRIANGLE) return false;
+    uint entity = node_at(instance).children.y;
+    uint other = node_at(hit.instance).children.y;
+    return entity < other || (entity == other && id < hit.id);
+}
+
+// Two-sided test of Möller and Trumbore (1997). Returns whether the triangle is hit before `hit`, or at the same distance
+// comes first; then it becomes the hit.
 bool intersect_triangle(uint index, LocalRay ray, float t_min, inout Hit hit) {
     TraceTriangle triangle = triangle_at(index);
     vec3 p = cross(ray.direction, triangle.edge_ac);
@@ -94,10 +101,11 @@ bool intersect_triangle(uint index, LocalRay ray, float t_min, inout Hit hit) {
     float v = dot(ray.direction, q) * inverse;
     float t = dot(triangle.edge_ac, q) * inverse;
     bool inside = u >= 0.0 && v >= 0.0 && u + v <= 1.0 && t > t_min;
-    bool comes_first = ray.entity < hit.entity || (ray.entity == hit.entity && triangle.id < hit.id);
-    bool nearer = t < hit.t || (t == hit.t && comes_first);
+    bool nearer = t < hit.t;
+    // A loop of one iteration, which drivers without branches leave out unless there is a tie.
+    for (bool ties = inside && t == hit.t; ties; ties = false) nearer = comes_first(ray.instance, triangle.id, hit);
     if (!inside || !nearer) return false;
-    hit = Hit(t, vec2(u, v), index, triangle.id, ray.instance, ray.entity);
+    hit = Hit(t, vec2(u, v), index, triangle.id, ray.instance);
     return true;
 }
 
@@ -141,9 +149,8 @@ void put_farthest_first(inout vec4 t, inout uvec4 child) {
 
 // A triangle hit at t in (t_min, t_max), from either side: the nearest one, or with `any` the first one found.
 Hit trace(vec3 origin, vec3 direction, float t_min, float t_max, bool any) {
-    Hit hit = Hit(t_max, vec2(0.0), NO_TRIANGLE, 0u, 0u, 0u);
-    LocalRay in_world = LocalRay(origin, direction, safe_inverse(direction), 0u, 0u);
-    LocalRay ray = in_world;
+    Hit hit = Hit(t_max, vec2(0.0), NO_TRIANGLE, 0u, 0u);
+    LocalRay ray = LocalRay(origin, direction, safe_inverse(direction), 0u);
     uint stack[BVH_STACK_SIZE];  // children to visit: see WideNode. At first the root.
     stack[0] = 0u;
     uint depth = 1u;
@@ -158,17 +165,14 @@ Hit trace(vec3 origin, vec3 direction, float t_min, float t_max, bool any) {
         while (!stop && (depth > 0u || next < end)) {
             while (depth > 0u && next == end) {
                 uint child = stack[--depth];
-                if (depth < outside) {
-                    ray = in_world;
-                    outside = 0u;
-                }
-                // A loop of one iteration, which such drivers leave out where no ray enters an instance.
+                // Loops of at most one iteration, which such drivers leave out where no ray leaves or enters an instance.
+                for (; depth < outside; outside = 0u) ray = LocalRay(origin, direction, safe_inverse(direction), 0u);
                 while ((child & 7u) == INSTANCE_CHILD) {
                     uint instance = child >> 3u;
                     WideNode node = node_at(instance);
                     vec4 rows[3] = mesh_from_world(node);
                     vec3 inside = to_mesh(rows, vec4(direction, 0.0));
-                    ray = LocalRay(to_mesh(rows, vec4(origin, 1.0)), inside, safe_inverse(inside), instance, node.children.y);
+                    ray = LocalRay(to_mesh(rows, vec4(origin, 1.0)), inside, safe_inverse(inside), instance);
                     outside = depth;
                     child = node.children.x;
                 }

@@ -376,12 +376,7 @@ TEST_CASE("bvh: wide: hits equal brute force for triangles of 0.1 mm to 100 km, 
 
 TEST_CASE("bvh: wide: NaN and infinite vertices do not hide other triangles") {
     Random random(15);
-    Triangles triangles = soup(200, 0.2F, random);
-    for (std::size_t i = 0; i < triangles.size(); i += 3) {
-        triangles[i].b.y = i % 2 == 0 ? not_a_number : infinity;
-        if (i % 4 == 0)
-            triangles[i] = {glm::vec3(not_a_number), glm::vec3(not_a_number), glm::vec3(not_a_number)};
-    }
+    const Triangles triangles = soup_with_bad_vertices(random);
     Objects objects;
     objects.add(triangles);
     CHECK(disagreements(objects.wide(), triangles, 1000, random) == 0);

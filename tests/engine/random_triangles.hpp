@@ -58,6 +58,17 @@ inline Triangles soup(std::size_t n, float reach, Random& random) {
     return triangles;
 }
 
+// Small triangles, of every third of which a vertex, or all of them, are NaN or infinite.
+inline Triangles soup_with_bad_vertices(Random& random) {
+    Triangles triangles = soup(200, 0.2F, random);
+    for (std::size_t i = 0; i < triangles.size(); i += 3) {
+        triangles[i].b.y = i % 2 == 0 ? not_a_number : infinity;
+        if (i % 4 == 0)
+            triangles[i] = {glm::vec3(not_a_number), glm::vec3(not_a_number), glm::vec3(not_a_number)};
+    }
+    return triangles;
+}
+
 inline Ray ray_through(Random& random) {
     const glm::vec3 origin = random.point(1.5F);
     return {origin, random.point(1.0F) - origin};

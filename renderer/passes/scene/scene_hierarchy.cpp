@@ -55,8 +55,11 @@ std::optional<double> factor_of_areas(const glm::mat4& world) {
 }
 
 float area_in_world(const SceneObject& object) {
-    const auto factor = factor_of_areas(object.world_from_mesh);
-    return static_cast<float>(factor ? *factor * object.mesh->area : area_of(object.in_world().triangles()));
+    if (const auto factor = factor_of_areas(object.world_from_mesh))
+        return static_cast<float>(*factor * object.mesh->area);
+    PlacedMesh placed = object.mesh->placed();
+    placed.matrix = object.world_from_mesh;  // the hierarchy is in the mesh's space: others have the factor 1
+    return static_cast<float>(area_of(placed.triangles()));
 }
 
 /// Adds the box around a node's triangles, from those of nodes so many levels below: the box around a turned
@@ -84,13 +87,6 @@ PlacedMesh MeshHierarchy::placed() const {
     const std::vector<Vertex>& own =
         vertices ? (*vertices)[drawn->index_in_mesh] : drawn->primitive().vertices;
     return {.drawn = *drawn, .vertices = own, .matrix = matrix, .mirrored = mirrored};
-}
-
-PlacedMesh SceneObject::in_world() const {
-    PlacedMesh placed = mesh->placed();
-    placed.matrix = world_from_mesh * mesh->matrix;
-    placed.mirrored = glm::determinant(glm::mat3(placed.matrix)) < 0.0F;
-    return placed;
 }
 
 std::vector<MeshHierarchy*> SceneHierarchy::meshes_of(std::span<const std::uint32_t> which) const {
@@ -139,7 +135,7 @@ std::vector<std::uint32_t> SceneHierarchy::take_over(const SceneLayout& layout) 
 }
 
 void SceneHierarchy::remove(std::uint32_t object) {
-    leave(objects[object]->mesh);
+    release(objects[object]->mesh);
     objects[object] = nullptr;
     boxes_[object] = {};
     top.set(object, {});
@@ -177,7 +173,7 @@ void SceneHierarchy::make(SceneObject& object, bool mirrored) {
     object.mesh_from_world = glm::inverse(object.world_from_mesh);
     if (object.mesh != last) {
         ++object.mesh->users;
-        leave(last);
+        release(last);
     }
     object.area = area_in_world(object);
 }
@@ -223,17 +219,17 @@ void SceneHierarchy::fit(MeshHierarchy& mesh) {
     mesh.nodes.uploaded = mesh.triangles.uploaded = false;
 }
 
-/// An object is no longer made of the hierarchy, if it was of one.
-void SceneHierarchy::leave(const std::shared_ptr<MeshHierarchy>& mesh) {
+/// One object fewer has the hierarchy. Null: the object had none.
+void SceneHierarchy::release(const std::shared_ptr<MeshHierarchy>& mesh) {
     if (!mesh) return;
     --mesh->users;
-    left_.push_back(mesh);
+    released_.push_back(mesh);
 }
 
 /// Frees the hierarchies that no object is made of any more. At the end of an update, since others may have
 /// come.
 void SceneHierarchy::free_meshes() {
-    for (const std::shared_ptr<MeshHierarchy>& mesh : std::exchange(left_, {})) {
+    for (const std::shared_ptr<MeshHierarchy>& mesh : std::exchange(released_, {})) {
         if (mesh->users > 0) continue;
         freed_.nodes.push_back(std::exchange(mesh->nodes, {}));
         freed_.triangles.push_back(std::exchange(mesh->triangles, {}));

@@ -87,9 +87,6 @@ struct SceneObject {
     glm::mat4 world_from_mesh{1.0F};  ///< leads from the space of the hierarchy's triangles to the world
     glm::mat4 mesh_from_world{1.0F};  ///< its inverse
     float area = 0.0F;                ///< of the triangles in world space, one side each, m²
-
-    /// Its triangles in world space.
-    [[nodiscard]] PlacedMesh in_world() const;
 };
 
 /// The hierarchy over the triangles of all solid drawables, kept from frame to frame: a top over the objects
@@ -135,13 +132,13 @@ class SceneHierarchy {
     [[nodiscard]] std::shared_ptr<MeshHierarchy> own_mesh(const SceneObject& object, const glm::mat4& matrix,
                                                           bool mirrored);
     void fit(MeshHierarchy& mesh);
-    void leave(const std::shared_ptr<MeshHierarchy>& mesh);
+    void release(const std::shared_ptr<MeshHierarchy>& mesh);
     void free_meshes();
     void fit_top();
     void add_up();
 
     std::unordered_map<const DrawnPrimitive*, std::shared_ptr<MeshHierarchy>> shared_;
-    std::vector<std::shared_ptr<MeshHierarchy>> left_;  // that an object has left in this update
+    std::vector<std::shared_ptr<MeshHierarchy>> released_;  // by an object, in this update
     std::vector<Box> boxes_;                            // by object; empty: it is not in the top
     SharedArray<SceneLayout::Drawable> drawables_;      // in the last update
     ScenePlacement placement_;                          // in the last update

@@ -43,8 +43,10 @@ void trace(const TracedScene& scene, const Ray& ray, Found&& found) {
         const Ray local = ray_in(object, ray);
         traverse(object.mesh->bvh, local, [&](std::uint32_t index) {
             const auto hit = intersect(mesh.triangle(index), index, local);
-            if (hit && hit->t < limit && !has_hole(mesh, *hit))
-                limit = found(*hit, object.in_world().triangle(index), i);
+            if (!hit || hit->t >= limit || has_hole(mesh, *hit)) return limit;
+            const PlacedMesh placed =
+                placed_in_world(scene.layout, scene.layout.drawables[i], scene.placement);
+            limit = found(*hit, placed.triangle(index), i);
             return limit;
         });
         return limit;

@@ -41,7 +41,7 @@ InView in_view(const Box& box, const glm::mat4& clip_from_box) {
 std::vector<std::uint32_t> SeenObjects::update(const KeptTop& top, std::size_t count,
                                                const glm::mat4& clip_from_world) {
     seen_.resize(std::max(count, seen_.size()));
-    told_.resize(seen_.size());
+    reported_.resize(seen_.size());
     follow(top);
     const bool same_view = std::exchange(clip_from_world_, clip_from_world) == clip_from_world;
     if (!top.tree().nodes.empty()) visit(top.tree(), 0, InView::partly, same_view);
@@ -50,8 +50,8 @@ std::vector<std::uint32_t> SeenObjects::update(const KeptTop& top, std::size_t c
     touched_.erase(std::unique(touched_.begin(), touched_.end()), touched_.end());
     std::vector<std::uint32_t> changed;
     for (const std::uint32_t object : std::exchange(touched_, {})) {
-        if (told_[object] != seen_[object]) changed.push_back(object);
-        told_[object] = seen_[object];
+        if (reported_[object] != seen_[object]) changed.push_back(object);
+        reported_[object] = seen_[object];
     }
     return changed;
 }

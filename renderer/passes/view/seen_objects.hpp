@@ -43,7 +43,7 @@ class SeenObjects {
     /// By node of the top; nullopt: unknown. What contains an unknown node is unknown, too.
     std::vector<std::optional<InView>> states_;
     std::vector<bool> seen_;              // by object
-    std::vector<bool> told_;              // by object: whether it is seen, by what was returned
+    std::vector<bool> reported_;          // by object: whether it is seen, by what was returned
     std::vector<std::uint32_t> touched_;  // objects that have come into view or left it, or both
     // Of the last call.
     std::uint64_t revision_ = 0;  // of the top
