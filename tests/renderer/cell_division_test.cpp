@@ -17,6 +17,7 @@
 #include "renderer/passes/scene/traced_scene.hpp"
 #include "renderer/passes/scene/world_triangles.hpp"
 #include "renderer/passes/surfels/cell_division.hpp"
+#include "tests/renderer/items_of_meshes.hpp"
 #include "tests/renderer/scene_builder.hpp"
 #include "tests/seed.hpp"
 
@@ -28,15 +29,7 @@ namespace {
 class Surroundings {
  public:
     void add(const std::shared_ptr<const Mesh>& mesh, const glm::mat4& world = glm::mat4(1.0F)) {
-        const auto item = static_cast<std::uint32_t>(layout_.geometry.items.size());
-        layout_.geometry.items.push_back({.entity = {item, 0}, .mesh = mesh});
-        DrawnPrimitive drawn{.mesh = mesh};
-        for (const Vertex& vertex : drawn.primitive().vertices) drawn.bounds.grow(vertex.position);
-        layout_.drawables.push_back({.entity = {item, 0},
-                                     .item = item,
-                                     .next = SceneLayout::none,
-                                     .drawn = std::make_shared<const DrawnPrimitive>(std::move(drawn))});
-        layout_.first_of_item.push_back(item);
+        add_item(layout_, mesh);
         placement_.world.push_back(world);
         hierarchy_.update(layout_, placement_);
     }
@@ -88,7 +81,8 @@ void add_cell(SurfelSet& set, const std::vector<glm::vec3>& positions,
                               .uv = glm::vec2(0.0F),
                               .surfel = static_cast<std::uint32_t>(set.surfels.size()),
                               .colour = 0xffffffffU});
-        set.point_places.push_back({.triangle = first + i, .weights = glm::vec2(0.3F), .back = false});
+        set.point_places.push_back(
+            {.solid = 0, .triangle = first + i, .weights = glm::vec2(0.3F), .back = false});
     }
     set.surfels.push_back({.position = positions[0],
                            .first_point = first,
@@ -260,7 +254,7 @@ TEST_CASE("of surfaces that lie on each other only the front one counts, or the 
         Surroundings surroundings;
         surroundings.add(floor);
         surroundings.add(other, upside_down ? glm::scale(moved, {1.0F, -1.0F, -1.0F}) : moved);
-        const std::vector<std::uint32_t> first = first_triangles(surroundings.traced().layout);
+        const std::vector<std::uint32_t> order = order_of_solids(surroundings.traced().layout);
         std::array<double, 2> found{};
         for (std::uint32_t item = 0; item < 2; ++item) {
             SurfelSet cell = floor_cell();
@@ -269,11 +263,11 @@ TEST_CASE("of surfaces that lie on each other only the front one counts, or the 
                 if (item == 1) point.position.y = height;
                 point.normal *= side;
             }
-            for (SurfacePoint& place : cell.point_places) place.triangle = first[item];
+            for (SurfacePoint& place : cell.point_places) place = {.solid = order[item]};
             cell.surfels[0].position = cell.points[0].position;
             cell.surfels[0].normal = cell.points[0].normal;
             cell.surfel_places[0] = cell.point_places[0];
-            const CellDivision division = divide_cell(cell, 0, surroundings.traced(), first, ray_offset);
+            const CellDivision division = divide_cell(cell, 0, surroundings.traced(), order, ray_offset);
             const SurfelSet set = divided(cell, {&division, 1});
             check_consistent(set);
             found[item] = area_of(set);

@@ -300,6 +300,31 @@ TEST_CASE_FIXTURE(EdgeCases, "the memory budget limits the number of shadow maps
     CHECK(renderer.report().lights.without_map == 0);
 }
 
+TEST_CASE_FIXTURE(EdgeCases, "the sun has no map of a world of millions of triangles, and the same shadows") {
+    Scene scene = ground();
+    scene.world.set(scene.light, looking({0, 1, 1}, {0, 0, 0}));
+    scene.world.set(scene.light, DirectionalLight{.illuminance = 5.0F});
+    const auto sphere = sphere_inwards(0.3F, 5, diffuse(glm::vec3(0.5F)));
+    add(scene.world, at({0.1F, 2.4F, 2.6F}), MeshInstance{sphere});  // behind the camera; it sees the shadow
+    Configuration configuration = linear_configuration();
+    configuration.indirect = false;
+    configure(configuration);
+    const Picture mapped = render(scene, size);
+    CHECK(renderer.report().lights.with_map == 1);
+    // 841 more of 20,480 triangles, behind the camera and in the box around the others, which rays start by.
+    for (int i = 0; i < 29 * 29; ++i) {
+        Transform place =
+            at({0.2F * static_cast<float>(i % 29) - 2.8F, 0.1F, 0.05F * static_cast<float>(i / 29) + 2.5F});
+        place.scale = glm::vec3(0.2F);
+        add(scene.world, place, MeshInstance{sphere});
+    }
+    // Where a map decides, a ray would decide the same.
+    CHECK(render(scene, size) == mapped);
+    CHECK(renderer.report().lights.without_map == 1);
+    scene.world.set(scene.light, DirectionalLight{.illuminance = 5.0F, .casts_shadow = false});
+    CHECK(render(scene, size) != mapped);
+}
+
 TEST_CASE_FIXTURE(EdgeCases, "hundreds of lights all contribute, even those without a shadow map") {
     Scene scene = ground();
     scene.world.set(scene.light, at({0.4F, 1.0F, -0.2F}));

@@ -14,6 +14,7 @@
 #include "renderer/facade/device_of.hpp"
 #include "renderer/gpu/gpu_types.hpp"
 #include "renderer/passes/surfels/surfel_groups.hpp"
+#include "tests/renderer/items_of_meshes.hpp"
 #include "tests/renderer/path_fixture.hpp"
 #include "tests/renderer/scene_builder.hpp"
 #include "tests/renderer/texels.hpp"
@@ -26,16 +27,8 @@ using namespace candela;
 namespace {
 
 /// A square of 2 m, of two triangles.
-SceneTriangles square_triangles() {
-    SceneTriangles scene{.triangles = {}, .item_of = {0, 0}, .materials = {diffuse(glm::vec3(0.5F))}};
-    for (const float side : {1.0F, -1.0F}) {
-        gpu::TraceTriangle triangle{};
-        triangle.a = {side, side, 0.0F};
-        triangle.edge_ab = {-2.0F * side, 0.0F, 0.0F};
-        triangle.edge_ac = {0.0F, -2.0F * side, 0.0F};
-        scene.triangles.push_back(triangle);
-    }
-    return scene;
+SceneSurfaces square_surfaces() {
+    return surfaces_of({parallelogram({-1, -1, 0}, {2, 0, 0}, {0, 2, 0}, diffuse(glm::vec3(0.5F)))});
 }
 
 /// disc_term of shaders/vpls/disc.glsl in double precision, for a receiver with one normal. See
@@ -149,7 +142,7 @@ Scene strip_over_floor() {
 TEST_CASE("surfels of a branch follow each other, and up to 512 each has a branch of its own") {
     for (const std::uint32_t count : {100U, 512U, 513U, 4096U}) {
         CAPTURE(count);
-        const SurfelSet set = SurfelPlacement(square_triangles(), test_seed()).place({.reflecting = count});
+        const SurfelSet set = SurfelPlacement(square_surfaces(), test_seed()).place({.reflecting = count});
         REQUIRE(set.branches.size() == set.surfels.size());
         std::vector<std::uint32_t> starts;
         for (std::size_t i = 0; i < set.branches.size(); ++i) {
@@ -163,7 +156,7 @@ TEST_CASE("surfels of a branch follow each other, and up to 512 each has a branc
 }
 
 TEST_CASE("branches have the area of their surfels, and about the width of a square of that area") {
-    const SurfelSet set = SurfelPlacement(square_triangles(), test_seed()).place({.reflecting = 8192});
+    const SurfelSet set = SurfelPlacement(square_surfaces(), test_seed()).place({.reflecting = 8192});
     const SurfelSet branches = branches_of(set);
     CHECK(branches.points.size() == set.surfels.size());
     double area = 0.0;
@@ -178,7 +171,7 @@ TEST_CASE("branches have the area of their surfels, and about the width of a squ
 }
 
 TEST_CASE("a place on a floor of 16 times the surfels sums at most three times the VPLs") {
-    const SurfelSet set = SurfelPlacement(square_triangles(), test_seed()).place({.reflecting = 8192});
+    const SurfelSet set = SurfelPlacement(square_surfaces(), test_seed()).place({.reflecting = 8192});
     const SurfelSet branches = branches_of(set);
     // Seen from above the floor. About π · 3² = 28 groups of 16 are nearer than GROUP_FAR widths.
     for (const float x : {-0.9F, -0.3F, 0.0F, 0.5F}) {

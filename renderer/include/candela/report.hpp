@@ -74,7 +74,7 @@ struct LightReport {
     std::uint32_t with_map = 0;      ///< lights that have a shadow map
     std::uint32_t shadow_views = 0;  ///< drawn in the last run of `shadow-maps`: 6 per cube, 1 per flat map
     /// Lights whose shadows take a ray everywhere, because ShadowSettings::budget_mib or the number of layers
-    /// leaves no room for a map.
+    /// leaves no room for a map, or a directional one's would show more than 2²⁴ triangles.
     std::uint32_t without_map = 0;
     /// Lights that every cell visits: they have no range, or the light lists would exceed their memory.
     std::uint32_t global = 0;

@@ -24,6 +24,9 @@ namespace {
 constexpr std::uint32_t cube_faces = 6;
 constexpr std::uint32_t most_layers = 2048;  // of an array texture, on every driver (OpenGL 4.5, table 23.53)
 constexpr std::uint64_t bytes_per_depth = 4;
+/// The map of a directional light shows all of a world. Of one that has more triangles, drawing it takes
+/// longer than the rays of many pictures.
+constexpr std::uint64_t most_triangles_of_map = 1U << 24U;
 
 /// A matrix to clip space, and gpu::Shadow::depth_scale.
 struct MapProjection {
@@ -218,6 +221,7 @@ void draw_views(Gpu& gpu, Execution& run, const ShadowNode& node, const std::vec
     const auto& out = node.out;
     const ShadowPlan& plan = run.value(out.plan);
     run.set(out.drawn, {plan.views, static_cast<std::uint32_t>(due.size())});
+    if (plan.views.empty()) return;
 
     // Rays end nearer to the light.
     const float least_distance = 0.5F * run.value(node.metrics).ray_offset();
@@ -305,7 +309,9 @@ ShadowPlan plan_shadows(const LightTable& lights, const SceneMetrics& metrics, c
         const std::uint64_t cost =
             cube ? bytes(settings.cube_resolution, cube_faces) : bytes(settings.map_resolution, 1);
         const bool no_layer = cube ? (plan.cubes + 1) * cube_faces > most_layers : plan.maps == most_layers;
-        if (cost > budget || no_layer) {
+        const bool shows_all = entry.light.kind == LIGHT_DIRECTIONAL;
+        const bool too_many = shows_all && metrics.triangles > most_triangles_of_map;
+        if (cost > budget || no_layer || too_many) {
             ++plan.by_rays;
             plan.shadows[i] = without_map(SHADOW_BY_RAYS, metrics.ray_offset());
             continue;

@@ -39,7 +39,7 @@ struct ShadowPlan {
     std::vector<View> views;
     std::uint32_t cubes = 0;  ///< cubes and flat maps: how many lights have one
     std::uint32_t maps = 0;
-    std::uint32_t by_rays = 0;  ///< lights whose maps would exceed the budget or the layer limit
+    std::uint32_t by_rays = 0;  ///< lights whose maps would exceed a limit
     bool operator==(const ShadowPlan&) const = default;
 };
 

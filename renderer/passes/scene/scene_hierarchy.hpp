@@ -139,9 +139,9 @@ class SceneHierarchy {
 
     std::unordered_map<const DrawnPrimitive*, std::shared_ptr<MeshHierarchy>> shared_;
     std::vector<std::shared_ptr<MeshHierarchy>> released_;  // by an object, in this update
-    std::vector<Box> boxes_;                            // by object; empty: it is not in the top
-    SharedArray<SceneLayout::Drawable> drawables_;      // in the last update
-    ScenePlacement placement_;                          // in the last update
+    std::vector<Box> boxes_;                                // by object; empty: it is not in the top
+    SharedArray<SceneLayout::Drawable> drawables_;          // in the last update
+    ScenePlacement placement_;                              // in the last update
     std::vector<std::uint32_t> changed_;
     std::vector<std::uint32_t> removed_;  // since the last call of add_up
     Freed freed_;

@@ -4,6 +4,7 @@
 #include <cmath>
 #include <cstdint>
 #include <span>
+#include <utility>
 
 #include <glm/common.hpp>
 #include <glm/geometric.hpp>
@@ -18,12 +19,6 @@ namespace {
 /// Normal of the front, twice as long as the triangle's area.
 glm::vec3 cross_of(const Triangle& triangle) {
     return glm::cross(triangle.b - triangle.a, triangle.c - triangle.a);
-}
-
-bool has_hole(const PlacedMesh& mesh, const Hit& hit) {
-    const Material& material = *mesh.drawn.primitive().material;
-    if (material.alpha_mode != AlphaMode::mask) return false;
-    return is_hole(material, mesh.traced(hit.triangle, 0), {hit.u, hit.v});
 }
 
 /// The ray in the space of an object's mesh. The distance along it is the same there.
@@ -43,7 +38,7 @@ void trace(const TracedScene& scene, const Ray& ray, Found&& found) {
         const Ray local = ray_in(object, ray);
         traverse(object.mesh->bvh, local, [&](std::uint32_t index) {
             const auto hit = intersect(mesh.triangle(index), index, local);
-            if (!hit || hit->t >= limit || has_hole(mesh, *hit)) return limit;
+            if (!hit || hit->t >= limit || is_hole(mesh, index, {hit->u, hit->v})) return limit;
             const PlacedMesh placed =
                 placed_in_world(scene.layout, scene.layout.drawables[i], scene.placement);
             limit = found(*hit, placed.triangle(index), i);
@@ -70,17 +65,14 @@ std::optional<SurfaceHit> nearest_surface(const TracedScene& scene, const Ray& r
                       glm::dot(cross, ray.direction) < 0.0F ? normal : -normal};
 }
 
-std::vector<std::uint32_t> first_triangles(const SceneLayout& layout) {
-    std::vector<std::uint32_t> first(layout.drawables.size());
+std::vector<std::uint32_t> order_of_solids(const SceneLayout& layout) {
+    std::vector<std::uint32_t> order(layout.drawables.size());
     std::uint32_t count = 0;
-    layout.visit_solids([&](std::uint32_t number) {
-        first[number] = count;
-        count += static_cast<std::uint32_t>(layout.drawables[number].primitive().indices.size() / 3);
-    });
-    return first;
+    layout.visit_solids([&](std::uint32_t number) { order[number] = count++; });
+    return order;
 }
 
-bool is_covered(const TracedScene& scene, std::span<const std::uint32_t> first, const LayerPoint& point,
+bool is_covered(const TracedScene& scene, std::span<const std::uint32_t> order, const LayerPoint& point,
                 const LayerLimits& limits) {
     const Ray down{point.position + limits.reach * point.normal, -point.normal, 0.0F,
                    limits.reach + limits.tie};
@@ -89,7 +81,9 @@ bool is_covered(const TracedScene& scene, std::span<const std::uint32_t> first, 
         const bool double_sided = scene.layout.drawables[object].primitive().material->double_sided;
         const bool faces_along = double_sided || glm::dot(cross_of(triangle), point.normal) > 0.0F;
         const bool is_in_front = limits.reach - hit.t > limits.tie;
-        covered = faces_along && (is_in_front || first[object] + hit.triangle < point.triangle);
+        const bool comes_first =
+            std::pair(order[object], hit.triangle) < std::pair(point.solid, point.triangle);
+        covered = faces_along && (is_in_front || comes_first);
         return covered ? -1.0F : down.t_max;
     });
     return covered;

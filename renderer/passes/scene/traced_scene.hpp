@@ -29,15 +29,15 @@ struct SurfaceHit {
 };
 [[nodiscard]] std::optional<SurfaceHit> nearest_surface(const TracedScene& scene, const Ray& ray);
 
-/// By drawable: the index of its first triangle among those of all solid drawables, in the order of
-/// SceneLayout::visit_solids.
-[[nodiscard]] std::vector<std::uint32_t> first_triangles(const SceneLayout& layout);
+/// By drawable: its index among the solid ones, in the order of SceneLayout::visit_solids.
+[[nodiscard]] std::vector<std::uint32_t> order_of_solids(const SceneLayout& layout);
 
 /// A point on a side of a triangle.
 struct LayerPoint {
     glm::vec3 position;
     glm::vec3 normal;        ///< unit
-    std::uint32_t triangle;  ///< index among those of all solid drawables
+    std::uint32_t solid;     ///< its drawable, by order_of_solids
+    std::uint32_t triangle;  ///< of the drawable
 };
 /// When surfaces that lie on each other are one.
 struct LayerLimits {
@@ -45,8 +45,8 @@ struct LayerLimits {
     float tie = 0.0F;    ///< metres: rounding may decide which is in front of one that is nearer
 };
 /// Whether another surface lies on a point. It faces the same way and is in front of it, or where that is a
-/// tie, its triangle comes first. `first`: first_triangles.
-[[nodiscard]] bool is_covered(const TracedScene& scene, std::span<const std::uint32_t> first,
+/// tie, comes first. `order`: order_of_solids.
+[[nodiscard]] bool is_covered(const TracedScene& scene, std::span<const std::uint32_t> order,
                               const LayerPoint& point, const LayerLimits& limits);
 
 /// Whether there is a surface between two points.

@@ -112,8 +112,10 @@ bool traces_second_uvs(const Primitive& primitive) {
            (material.second_uvs.normal && material.normal_texture);
 }
 
-bool is_hole(const Material& material, const gpu::TraceTriangle& triangle, glm::vec2 weights) {
+bool is_hole(const PlacedMesh& mesh, std::uint32_t i, glm::vec2 weights) {
+    const Material& material = *mesh.drawn.primitive().material;
     if (material.alpha_mode != AlphaMode::mask) return false;
+    const gpu::TraceTriangle triangle = mesh.traced(i, 0);
     const auto interpolated = [&](const auto& a, const auto& b, const auto& c) {
         return a + weights.x * (b - a) + weights.y * (c - a);
     };

@@ -46,8 +46,8 @@ struct PlacedMesh {
 /// Whether rays need second texture coordinates of the primitive: those of emission or normals.
 [[nodiscard]] bool traces_second_uvs(const Primitive& primitive);
 
-/// Whether there is a hole of the material's alpha mask at a point of a triangle with these weights of its
+/// Whether there is a hole of the material's alpha mask at a point of triangle i with these weights of its
 /// corners b and c.
-[[nodiscard]] bool is_hole(const Material& material, const gpu::TraceTriangle& triangle, glm::vec2 weights);
+[[nodiscard]] bool is_hole(const PlacedMesh& mesh, std::uint32_t i, glm::vec2 weights);
 
 }  // namespace candela

@@ -128,7 +128,7 @@ void append_part(SurfelSet& to, const SurfelSet& set, std::size_t cell, const Ce
 }  // namespace
 
 CellDivision divide_cell(const SurfelSet& set, std::size_t surfel, const TracedScene& scene,
-                         std::span<const std::uint32_t> first, float ray_offset) {
+                         std::span<const std::uint32_t> order, float ray_offset) {
     const gpu::Surfel& own = set.surfels[surfel];
     const std::span<const gpu::CellPoint> points = points_of(set, surfel);
     const float lift = lift_of(own);
@@ -139,18 +139,19 @@ CellDivision divide_cell(const SurfelSet& set, std::size_t surfel, const TracedS
     }
     const LayerLimits limits = layer_limits(ray_offset);
     const auto is_hidden = [&](const glm::vec3& position, const glm::vec3& normal,
-                               std::span<const SurfacePoint> places, std::size_t i) {
-        return !first.empty() && is_covered(scene, first, {position, normal, places[i].triangle}, limits);
+                               const SurfacePoint& place) {
+        return !order.empty() &&
+               is_covered(scene, order, {position, normal, place.solid, place.triangle}, limits);
     };
     const bool is_whole = surfel >= set.surfels.size() - set.emitting_count && !divides_emitters(set);
     CellDivision division;
     for (std::size_t i = 0; i < points.size(); ++i) {
         const bool hidden =
-            is_hidden(points[i].position, points[i].normal, set.point_places, own.first_point + i);
+            is_hidden(points[i].position, points[i].normal, set.point_places[own.first_point + i]);
         division.part_of.push_back(hidden ? covered_part : most_cell_parts);
     }
     Seat from = seat_of(own.position, own.normal, lift, scene, ray_offset);
-    const bool own_hidden = is_hidden(own.position, own.normal, set.surfel_places, surfel);
+    const bool own_hidden = is_hidden(own.position, own.normal, set.surfel_places[surfel]);
     for (std::uint8_t part = own_hidden ? 1 : 0; part < most_cell_parts; ++part) {
         if (part > 0) {
             const auto middle = middle_of_rest(points, division);

@@ -45,10 +45,10 @@ struct CellDivision {
 /// above. Each further surfel is at the point nearest to the centroid of those that are still in no part.
 /// After most_cell_parts, those that are left are in none. Surfaces that lie on each other, up to 0.1 mm
 /// apart or as far as rays start above them, are one: only points of the front one are in a part. Cells that
-/// emit light have one part unless divides_emitters. `first`: first_triangles; empty: no surface lies on
+/// emit light have one part unless divides_emitters. `order`: order_of_solids; empty: no surface lies on
 /// another. `ray_offset`: SceneMetrics::ray_offset.
 [[nodiscard]] CellDivision divide_cell(const SurfelSet& set, std::size_t surfel, const TracedScene& scene,
-                                       std::span<const std::uint32_t> first, float ray_offset);
+                                       std::span<const std::uint32_t> order, float ray_offset);
 
 /// The box around everything that divide_cell asks for: where nothing moves in it, the division stays.
 [[nodiscard]] Box box_of_division(const SurfelSet& set, std::size_t surfel, float ray_offset);

@@ -20,37 +20,6 @@ constexpr double weight_of_thickness = 16.0;
 /// Variance of the normal below which a patch counts as flat.
 constexpr double least_bend = 0.02;
 
-using Corners = std::array<glm::dvec3, 3>;
-
-Corners corners_of(const gpu::TraceTriangle& triangle, const Fragment& fragment) {
-    Corners corners;
-    for (std::size_t i = 0; i < 3; ++i) corners[i] = position_of(triangle, fragment.corners[i]);
-    return corners;
-}
-
-/// m².
-double area_of(const Corners& corners) {
-    return 0.5 * glm::length(glm::cross(corners[1] - corners[0], corners[2] - corners[0]));
-}
-
-/// Sums over an area.
-struct Moments {
-    double area = 0.0;
-    glm::dvec3 position{0.0}, position2{0.0}, normal{0.0}, normal2{0.0};
-
-    void add(const Corners& corners, double more, const glm::dvec3& front) {
-        const glm::dvec3 sum = corners[0] + corners[1] + corners[2];
-        area += more;
-        position += more / 3.0 * sum;
-        // The mean of x² over a triangle is (Σ xᵢ² + (Σ xᵢ)²) / 12.
-        position2 +=
-            more / 12.0 *
-            (corners[0] * corners[0] + corners[1] * corners[1] + corners[2] * corners[2] + sum * sum);
-        normal += more * front;
-        normal2 += more * front * front;
-    }
-};
-
 glm::dvec3 variance(const glm::dvec3& sum, const glm::dvec3& sum2, double area) {
     const glm::dvec3 mean = sum / area;
     return glm::max(sum2 / area - mean * mean, 0.0);
@@ -70,13 +39,14 @@ int largest(const glm::dvec3& v) {
 }
 
 /// The size and shape of a patch, and how it is cut.
-void describe(Patch& patch, const Moments& moments) {
+void describe(Patch& patch, const SurfaceMoments& moments) {
     const glm::dvec3 spread = variance(moments.position, moments.position2, moments.area);
     const glm::dvec3 bend = variance(moments.normal, moments.normal2, moments.area);
     const glm::dvec3 normal = moments.normal / moments.area;
     const double spread2 = sum_of(spread);
     const glm::dvec3 along_normal = spread * normal * normal;
     patch.area = moments.area;
+    patch.box = moments.box;
     patch.centre = glm::vec3(moments.position / moments.area);
     patch.spread2 = static_cast<float>(spread2);
     patch.bend = static_cast<float>(sum_of(bend) + (spread2 > 0.0 ? sum_of(along_normal) / spread2 : 0.0));
@@ -100,8 +70,33 @@ SurfacePoint point_in(const Fragment& fragment, std::uint64_t id) {
     glm::vec2 at(random_of(id, use_x), random_of(id, use_y));
     if (at.x + at.y > 1.0F) at = 1.0F - at;
     const auto& corners = fragment.corners;
-    return {fragment.triangle,
+    return {fragment.solid, fragment.triangle,
             corners[0] + at.x * (corners[1] - corners[0]) + at.y * (corners[2] - corners[0]), fragment.back};
+}
+
+/// Sums over fragments.
+struct Sums {
+    SurfaceMoments moments;
+    std::vector<double> area_up_to;  // the area of those up to each one, and of that one
+};
+
+Sums sum_up(const SceneSurfaces& surfaces, const std::vector<Fragment>& fragments) {
+    Sums sums;
+    sums.area_up_to.reserve(fragments.size());
+    for (const Fragment& fragment : fragments) {
+        const Triangle triangle = surfaces.triangle(fragment.solid, fragment.triangle);
+        const Corners corners = corners_of(triangle, fragment);
+        sums.moments.add(corners, area_of(corners), normal_of(triangle, fragment.back));
+        sums.area_up_to.push_back(sums.moments.area);
+    }
+    return sums;
+}
+
+/// A random point of fragments, evenly by area.
+SurfacePoint random_point(const std::vector<Fragment>& fragments, const Sums& sums, std::uint64_t id) {
+    const auto chosen =
+        std::ranges::upper_bound(sums.area_up_to, random_of(id, use_fragment) * sums.moments.area);
+    return point_in(fragments[static_cast<std::size_t>(chosen - sums.area_up_to.begin())], id);
 }
 
 /// The two sides of a cut.
@@ -123,7 +118,7 @@ void cut_fragment(const Fragment& fragment, const std::array<float, 3>& distance
     const glm::vec2 to_next = meet(next), to_last = meet(last);
     const std::size_t side = distances[alone] < 0.0F ? 0 : 1;
     const auto add = [&](std::size_t half, glm::vec2 a, glm::vec2 b, glm::vec2 c) {
-        halves[half].push_back({fragment.triangle, fragment.back, {a, b, c}});
+        halves[half].push_back({fragment.solid, fragment.triangle, fragment.back, {a, b, c}});
     };
     add(side, fragment.corners[alone], to_next, to_last);
     add(1 - side, to_next, fragment.corners[next], fragment.corners[last]);
@@ -131,7 +126,7 @@ void cut_fragment(const Fragment& fragment, const std::array<float, 3>& distance
 }
 
 /// Fragments that are much smaller than the patch are not cut: they go to one side as a whole.
-void divide_by_position(const gpu::TraceTriangle& triangle, const Fragment& fragment, const Patch& patch,
+void divide_by_position(const Triangle& triangle, const Fragment& fragment, const Patch& patch,
                         Halves& halves) {
     std::array<float, 3> distances{};
     for (std::size_t i = 0; i < 3; ++i) {
@@ -146,11 +141,10 @@ void divide_by_position(const gpu::TraceTriangle& triangle, const Fragment& frag
     halves[distances[0] + distances[1] + distances[2] < 0.0F ? 0 : 1].push_back(fragment);
 }
 
-Halves divide(std::span<const gpu::TraceTriangle> triangles, const std::vector<Fragment>& fragments,
-              const Patch& patch) {
+Halves divide(const SceneSurfaces& surfaces, const std::vector<Fragment>& fragments, const Patch& patch) {
     Halves halves;
     for (const Fragment& fragment : fragments) {
-        const gpu::TraceTriangle& triangle = triangles[fragment.triangle];
+        const Triangle triangle = surfaces.triangle(fragment.solid, fragment.triangle);
         if (patch.cuts_normals) {
             const float along = normal_of(triangle, fragment.back)[patch.axis];
             halves[along < patch.at ? 0 : 1].push_back(fragment);
@@ -174,65 +168,75 @@ double random_of(std::uint64_t id, std::uint64_t use) {
     return static_cast<double>(combine_ids(id, use) >> 11U) * 0x1p-53;
 }
 
-glm::vec3 normal_of(const gpu::TraceTriangle& triangle, bool back) {
-    const glm::vec3 front = glm::normalize(glm::cross(triangle.edge_ab, triangle.edge_ac));
-    return back ? -front : front;
+/// Calls `visit(solid)` for the solids of a root's item whose surfaces are its.
+template <class Visit>
+void PatchTree::visit_solids(const Patch& root, Visit visit) const {
+    const auto [first, end] = surfaces_->solids_of(root.item);
+    for (std::uint32_t solid = first; solid < end; ++solid) {
+        if (candela::emits(surfaces_->solids()[solid].material()) == root.emits) visit(solid);
+    }
 }
 
-std::optional<std::uint32_t> PatchTree::add(std::vector<Fragment> fragments, std::uint64_t id) {
-    Patch patch{.id = id};
-    Moments moments;
-    std::vector<double> area_up_to;
-    area_up_to.reserve(fragments.size());
-    for (const Fragment& fragment : fragments) {
-        const gpu::TraceTriangle& triangle = triangles_[fragment.triangle];
-        const Corners corners = corners_of(triangle, fragment);
-        for (const glm::dvec3& corner : corners) patch.box.grow(glm::vec3(corner));
-        const double area = area_of(corners);
-        if (area > 0.0) moments.add(corners, area, normal_of(triangle, fragment.back));
-        area_up_to.push_back(moments.area);
-    }
+std::optional<std::uint32_t> PatchTree::add_root(std::uint32_t item, bool emits, std::uint64_t id) {
+    Patch patch{.id = id, .item = item, .emits = emits};
+    SurfaceMoments moments;
+    visit_solids(patch, [&](std::uint32_t solid) { moments.add(surfaces_->moments(solid)); });
     if (!(moments.area > 0.0)) return std::nullopt;
     describe(patch, moments);
-    const auto chosen = std::ranges::upper_bound(area_up_to, random_of(id, use_fragment) * moments.area);
-    patch.point = point_in(fragments[static_cast<std::size_t>(chosen - area_up_to.begin())], id);
     patches_.push_back(patch);
-    fragments_.push_back(std::move(fragments));
+    fragments_.emplace_back();
     return static_cast<std::uint32_t>(patches_.size() - 1);
 }
 
-std::optional<std::uint32_t> PatchTree::add_root(std::vector<Fragment> fragments, std::uint64_t id) {
-    return add(std::move(fragments), id);
+/// `patch` is told its id and its surfaces. Returns whether it has an area.
+bool PatchTree::add_half(std::vector<Fragment> fragments, Patch patch) {
+    const Sums sums = sum_up(*surfaces_, fragments);
+    if (!(sums.moments.area > 0.0)) return false;
+    describe(patch, sums.moments);
+    patch.point = random_point(fragments, sums, patch.id);
+    patches_.push_back(patch);
+    fragments_.push_back(std::move(fragments));
+    return true;
 }
 
 bool PatchTree::cut(std::uint32_t patch) {
     if (patches_[patch].first != 0 || patches_[patch].is_whole) return !patches_[patch].is_whole;
     if (try_cut(patch)) return true;
     patches_[patch].at = patches_[patch].middle;
-    patches_[patch].is_whole = !try_cut(patch);
-    return !patches_[patch].is_whole;
+    if (try_cut(patch)) return true;
+    Patch& whole = patches_[patch];
+    whole.is_whole = true;
+    whole.point = random_point(fragments_[patch], sum_up(*surfaces_, fragments_[patch]), whole.id);
+    return false;
 }
 
 std::uint32_t PatchTree::half_of(std::uint32_t patch, const SurfacePoint& point) const {
     const Patch& cut = patches_[patch];
-    const gpu::TraceTriangle& triangle = triangles_[point.triangle];
+    const Triangle triangle = surfaces_->triangle(point.solid, point.triangle);
     const glm::vec3 place =
         cut.cuts_normals ? normal_of(triangle, point.back) : position_of(triangle, point.weights);
     return place[cut.axis] < cut.at ? 0 : 1;
 }
 
 bool PatchTree::try_cut(std::uint32_t patch) {
-    const std::uint64_t id = patches_[patch].id;
-    Halves halves = divide(triangles_, fragments_[patch], patches_[patch]);
+    const Patch whole = patches_[patch];
+    std::vector<Fragment>& fragments = fragments_[patch];
+    if (fragments.empty()) {
+        visit_solids(whole, [&](std::uint32_t solid) { surfaces_->append_fragments(fragments, solid); });
+    }
+    Halves halves = divide(*surfaces_, fragments, whole);
     if (halves[0].empty() || halves[1].empty()) return false;
-    const auto first = add(std::move(halves[0]), combine_ids(id, use_half));
-    if (!first) return false;
-    if (!add(std::move(halves[1]), combine_ids(id, use_half + 1))) {
+    const auto first = static_cast<std::uint32_t>(patches_.size());
+    const auto half = [&](std::uint64_t use) {
+        return Patch{.id = combine_ids(whole.id, use), .item = whole.item, .emits = whole.emits};
+    };
+    if (!add_half(std::move(halves[0]), half(use_half))) return false;
+    if (!add_half(std::move(halves[1]), half(use_half + 1))) {
         patches_.pop_back();
         fragments_.pop_back();
         return false;
     }
-    patches_[patch].first = *first;
+    patches_[patch].first = first;
     fragments_[patch] = {};
     return true;
 }

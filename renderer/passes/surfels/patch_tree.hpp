@@ -1,38 +1,21 @@
 #pragma once
 
-#include <array>
 #include <cstdint>
-#include <glm/vec2.hpp>
 #include <glm/vec3.hpp>
 #include <optional>
-#include <span>
 #include <vector>
 
 #include "engine/bvh/box.hpp"
-#include "renderer/gpu/gpu_types.hpp"
+#include "renderer/passes/surfels/scene_surfaces.hpp"
 
 namespace candela {
-
-/// A point of a triangle.
-struct SurfacePoint {
-    std::uint32_t triangle = 0;  ///< index
-    glm::vec2 weights{0.0F};     ///< of its corners b and c
-    bool back = false;           ///< on its back
-    bool operator==(const SurfacePoint&) const = default;
-};
-
-/// A part of a triangle, on one of its sides.
-struct Fragment {
-    std::uint32_t triangle = 0;  ///< index
-    bool back = false;
-    /// Weights of b and c of the triangle at the corners of the part.
-    std::array<glm::vec2, 3> corners{glm::vec2(0.0F, 0.0F), glm::vec2(1.0F, 0.0F), glm::vec2(0.0F, 1.0F)};
-};
 
 /// A part of surfaces. Its values depend on its root and on the cuts down to it, and on nothing else in the
 /// tree.
 struct Patch {
     std::uint64_t id = 0;
+    std::uint32_t item = 0;
+    bool emits = false;      ///< of the surfaces of the item that emit light, otherwise of the others
     double area = 0.0;       ///< m²
     glm::vec3 centre{0.0F};  ///< mean position
     float spread2 = 0.0F;    ///< m², variance of the position, sum over the axes
@@ -40,7 +23,7 @@ struct Patch {
     /// axes, and the share of `spread2` along its mean normal.
     float bend = 0.0F;
     Box box{};                  ///< around it
-    SurfacePoint point{};       ///< a random point of it
+    SurfacePoint point{};       ///< a random point of it; of a root, only if it is whole
     std::uint32_t first = 0;    ///< of its two halves, which follow each other; 0: not cut yet
     bool is_whole = false;      ///< it can't be cut
     bool cuts_normals = false;  ///< by the direction that its surfaces face, otherwise by position
@@ -55,16 +38,18 @@ struct Patch {
 /// Generators", 2014).
 [[nodiscard]] std::uint64_t combine_ids(std::uint64_t id, std::uint64_t other);
 
-/// Binary trees of patches, each of surfaces that were given as its root. A patch is cut into two across the
-/// axis along which its position varies most, near its middle, at a place that its id gives at random; or,
-/// where they vary more, by the directions that its surfaces face. Patches are cut when asked for.
+/// Binary trees of patches. The root of one is the surfaces of an item that reflect light, or those that emit
+/// it. A patch is cut into two across the axis along which its position varies most, near its middle, at a
+/// place that its id gives at random; or, where they vary more, by the directions that its surfaces face.
+/// Patches are cut when asked for: only then are triangles looked at one by one.
 class PatchTree {
  public:
-    /// `triangles` must outlive the tree.
-    explicit PatchTree(std::span<const gpu::TraceTriangle> triangles) : triangles_(triangles) {}
+    /// `surfaces` must outlive the tree.
+    explicit PatchTree(SceneSurfaces& surfaces) : surfaces_(&surfaces) {}
 
-    /// Index of a patch of these fragments; nullopt if they have no area.
-    [[nodiscard]] std::optional<std::uint32_t> add_root(std::vector<Fragment> fragments, std::uint64_t id);
+    /// Index of the patch of an item's surfaces that emit light, or of the others; nullopt if they have no
+    /// area.
+    [[nodiscard]] std::optional<std::uint32_t> add_root(std::uint32_t item, bool emits, std::uint64_t id);
 
     /// Cuts a patch, unless it is cut already. Returns whether it could be.
     bool cut(std::uint32_t patch);
@@ -77,18 +62,14 @@ class PatchTree {
     [[nodiscard]] std::size_t size() const { return patches_.size(); }
 
  private:
-    std::optional<std::uint32_t> add(std::vector<Fragment> fragments, std::uint64_t id);
+    bool add_half(std::vector<Fragment> fragments, Patch patch);
     bool try_cut(std::uint32_t patch);
+    template <class Visit>
+    void visit_solids(const Patch& root, Visit visit) const;
 
-    std::span<const gpu::TraceTriangle> triangles_;
+    SceneSurfaces* surfaces_;
     std::vector<Patch> patches_;
-    std::vector<std::vector<Fragment>> fragments_;  // by patch; none of those that are cut
+    std::vector<std::vector<Fragment>> fragments_;  // by patch; none of those that are cut, and of new roots
 };
-
-/// Unit normal of a side of a triangle.
-[[nodiscard]] glm::vec3 normal_of(const gpu::TraceTriangle& triangle, bool back);
-[[nodiscard]] inline glm::vec3 position_of(const gpu::TraceTriangle& triangle, glm::vec2 weights) {
-    return triangle.a + weights.x * triangle.edge_ab + weights.y * triangle.edge_ac;
-}
 
 }  // namespace candela

@@ -1,5 +1,6 @@
 #include "renderer/passes/surfels/surfel_placement.hpp"
 
+#include <array>
 #include <bit>
 #include <cmath>
 #include <glm/geometric.hpp>
@@ -7,6 +8,7 @@
 #include <glm/packing.hpp>
 #include <iterator>
 #include <map>
+#include <optional>
 #include <queue>
 #include <tuple>
 #include <utility>
@@ -22,7 +24,7 @@ enum CellUse : std::uint64_t { use_weight = 8, use_item, use_order, use_scale };
 
 /// Trees are planted anew once they have so many patches for each surfel. A set needs about two for each of
 /// its points.
-constexpr std::uint32_t most_patches_a_surfel = 256;
+constexpr std::size_t most_patches_a_surfel = 256;
 
 /// Interpolated between the corners, in sRGB: gpu::CellPoint::colour.
 std::uint32_t colour_at(const gpu::TraceTriangle& triangle, glm::vec2 b) {
@@ -46,20 +48,28 @@ std::uint32_t textured(std::uint32_t colour, const Image* image, glm::vec2 uv) {
     return glm::packUnorm4x8(glm::vec4(glm::convertLinearToSRGB(product), own.a * texel.a));
 }
 
-/// `second`: of the triangle; null: none.
-gpu::CellPoint cell_point(const gpu::TraceTriangle& triangle, const SecondEmission* second,
-                          const SurfacePoint& place, double area, std::uint32_t surfel) {
+/// Whether the emission lies by second texture coordinates.
+bool has_second_emission(const Material& material) {
+    return material.second_uvs.emissive && material.emissive_texture != nullptr;
+}
+
+gpu::CellPoint cell_point(const PlacedMesh& mesh, const SurfacePoint& place, double area,
+                          std::uint32_t surfel) {
+    const Material& material = *mesh.drawn.primitive().material;
+    const Triangle placed = mesh.triangle(place.triangle);
+    const gpu::TraceTriangle triangle = mesh.traced(place.triangle, 0);
     const glm::vec2 b = place.weights;
-    gpu::CellPoint point{.position = position_of(triangle, b),
+    gpu::CellPoint point{.position = position_of(placed, b),
                          .material = triangle.material,
-                         .normal = normal_of(triangle, place.back),
+                         .normal = normal_of(placed, place.back),
                          .area = static_cast<float>(area),
                          .uv = between(triangle.uv_a, triangle.uv_b, triangle.uv_c, b),
                          .surfel = surfel,
                          .colour = colour_at(triangle, b)};
-    if (second == nullptr) return point;
-    point.colour = textured(point.colour, second->base_colour.get(), point.uv);
-    point.uv = between(second->uvs[0], second->uvs[1], second->uvs[2], b);
+    if (!has_second_emission(material)) return point;
+    const std::array<glm::vec2, 3> second = mesh.second_uvs(place.triangle);
+    point.colour = textured(point.colour, material.base_colour_texture.get(), point.uv);
+    point.uv = between(second[0], second[1], second[2], b);
     return point;
 }
 
@@ -78,30 +88,25 @@ std::span<const Focus> foci_of(std::uint32_t item, std::span<const std::vector<F
 
 }  // namespace
 
-SurfelPlacement::SurfelPlacement(SceneTriangles scene, std::uint32_t seed)
-    : scene_(std::move(scene)), seed_(seed), tree_(scene_.triangles) {
+SurfelPlacement::SurfelPlacement(SceneSurfaces surfaces, std::uint32_t seed)
+    : surfaces_(std::move(surfaces)), seed_(seed), tree_(surfaces_) {
     plant();
 }
 
 void SurfelPlacement::plant() {
-    tree_ = PatchTree(scene_.triangles);
+    tree_ = PatchTree(surfaces_);
     reflecting_ = roots_of(false);
     emitting_ = roots_of(true);
 }
 
-std::vector<SurfelPlacement::Root> SurfelPlacement::roots_of(bool emitting) {
-    std::map<std::uint32_t, std::vector<Fragment>> fragments;  // by item
-    for (std::uint32_t i = 0; i < scene_.triangles.size(); ++i) {
-        const Material& material = *scene_.materials[scene_.triangles[i].material];
-        if (emits(material) != emitting) continue;
-        std::vector<Fragment>& of_item = fragments[scene_.item_of[i]];
-        of_item.push_back({.triangle = i});
-        if (material.double_sided) of_item.push_back({.triangle = i, .back = true});
-    }
-    std::vector<Root> roots;
-    for (auto& [item, of_item] : fragments) {
-        const std::uint64_t id = combine_ids(combine_ids(seed_, emitting ? 1 : 0), item);
-        if (const auto patch = tree_.add_root(std::move(of_item), id)) roots.push_back({*patch, item});
+std::vector<std::uint32_t> SurfelPlacement::roots_of(bool emitting) {
+    std::vector<std::uint32_t> roots;
+    std::optional<std::uint32_t> last;
+    for (const SceneSurfaces::Solid& solid : surfaces_.solids()) {
+        if (solid.item == last || emits(solid.material()) != emitting) continue;
+        last = solid.item;
+        const std::uint64_t id = combine_ids(combine_ids(seed_, emitting ? 1 : 0), solid.item);
+        if (const auto root = tree_.add_root(solid.item, emitting, id)) roots.push_back(*root);
     }
     return roots;
 }
@@ -114,10 +119,11 @@ SurfelPlacement::Weights SurfelPlacement::weights_of(std::span<const std::vector
     Weights weights{.foci = foci, .guide = guide};
     double shares = 0.0, area = 0.0;
     for (const GuidePoint& point : guide) {
-        const std::uint32_t triangle = point.place.triangle;
-        const glm::vec3 place = position_of(scene_.triangles[triangle], point.place.weights);
+        const std::uint32_t item = surfaces_.solids()[point.place.solid].item;
+        const glm::vec3 place =
+            position_of(surfaces_.triangle(point.place.solid, point.place.triangle), point.place.weights);
         shares += static_cast<double>(point.share);
-        area += static_cast<double>(point.area * density_at(foci_of(scene_.item_of[triangle], foci), place));
+        area += static_cast<double>(point.area * density_at(foci_of(item, foci), place));
     }
     if (!(shares > 0.0) || !(area > 0.0)) return weights;
     weights.of_share = 1.0 / shares;
@@ -129,7 +135,7 @@ SurfelPlacement::Weights SurfelPlacement::weights_of(std::span<const std::vector
 double SurfelPlacement::weight_of(const Cell& cell, const Weights& weights) const {
     constexpr double weight_of_bend = 4.0;
     const Patch& patch = tree_[cell.patch];
-    const auto density = static_cast<double>(density_in(patch.box, foci_of(cell.item, weights.foci)));
+    const auto density = static_cast<double>(density_in(patch.box, foci_of(patch.item, weights.foci)));
     double share = 0.0;
     for (const std::uint32_t i : cell.guides) share += static_cast<double>(weights.guide[i].share);
     const double size = weights.of_share * share + weights.of_area * patch.area * cell.scale * density;
@@ -138,12 +144,12 @@ double SurfelPlacement::weight_of(const Cell& cell, const Weights& weights) cons
 
 /// Items that stand for all, about `most` of them: each is chosen with a probability, a power of 1/2, that is
 /// proportional to its weight, and stands for the inverse of it. At least one.
-std::vector<SurfelPlacement::Cell> SurfelPlacement::share_items(const std::vector<Root>& roots, double most,
-                                                                const Weights& by_size) const {
+std::vector<SurfelPlacement::Cell> SurfelPlacement::share_items(const std::vector<std::uint32_t>& roots,
+                                                                double most, const Weights& by_size) const {
     std::vector<double> weights;
     double largest = 0.0;
-    for (const Root& root : roots) {
-        weights.push_back(weight_of({root.patch, root.item}, by_size));
+    for (const std::uint32_t root : roots) {
+        weights.push_back(weight_of({.patch = root}, by_size));
         largest = std::max(largest, weights.back());
     }
     // A weight of `whole` or more is chosen in any case.
@@ -160,27 +166,27 @@ std::vector<SurfelPlacement::Cell> SurfelPlacement::share_items(const std::vecto
     std::vector<Cell> cells;
     for (std::size_t i = 0; i < roots.size(); ++i) {
         const double scale = scale_of(weights[i], whole);
-        const bool is_chosen = random_of(tree_[roots[i].patch].id, use_item) * scale < 1.0;
-        if (is_chosen) cells.push_back({roots[i].patch, roots[i].item, scale});
+        const bool is_chosen = random_of(tree_[roots[i]].id, use_item) * scale < 1.0;
+        if (is_chosen) cells.push_back({.patch = roots[i], .scale = scale});
     }
     if (cells.empty()) {
         const auto first = static_cast<std::size_t>(std::ranges::max_element(weights) - weights.begin());
-        cells.push_back({roots[first].patch, roots[first].item, scale_of(weights[first], whole)});
+        cells.push_back({.patch = roots[first], .scale = scale_of(weights[first], whole)});
     }
     return cells;
 }
 
 /// Each item as a cell.
-std::vector<SurfelPlacement::Cell> SurfelPlacement::whole_items(const std::vector<Root>& roots,
+std::vector<SurfelPlacement::Cell> SurfelPlacement::whole_items(const std::vector<std::uint32_t>& roots,
                                                                 const Weights& weights) const {
     std::map<std::uint32_t, std::vector<std::uint32_t>> guides;  // by item
     for (std::uint32_t i = 0; i < weights.guide.size(); ++i) {
-        guides[scene_.item_of[weights.guide[i].place.triangle]].push_back(i);
+        guides[surfaces_.solids()[weights.guide[i].place.solid].item].push_back(i);
     }
     std::vector<Cell> cells;
     cells.reserve(roots.size());
-    for (const Root& root : roots) {
-        cells.push_back({root.patch, root.item, 1.0, 0, std::move(guides[root.item])});
+    for (const std::uint32_t root : roots) {
+        cells.push_back({.patch = root, .guides = std::move(guides[tree_[root].item])});
     }
     return cells;
 }
@@ -194,8 +200,8 @@ void SurfelPlacement::split(std::vector<Cell>& cells, std::size_t index,
         guides[tree_.half_of(whole.patch, guide[i].place)].push_back(i);
     }
     const std::uint32_t first = tree_[whole.patch].first;
-    cells[index] = {first, whole.item, whole.scale, whole.branch, std::move(guides[0])};
-    cells.push_back({first + 1, whole.item, whole.scale, whole.branch, std::move(guides[1])});
+    cells[index] = {first, whole.scale, whole.branch, std::move(guides[0])};
+    cells.push_back({first + 1, whole.scale, whole.branch, std::move(guides[1])});
 }
 
 /// Cuts cells, always the one of the greatest weight, until there are `count`.
@@ -244,16 +250,13 @@ SurfelPlacement::CutCells SurfelPlacement::cells_of(std::vector<Cell> whole, std
 }
 
 /// `chosen`: items, of `roots`.
-SurfelPlacement::CutCells SurfelPlacement::cells_on(const std::vector<Root>& roots,
+SurfelPlacement::CutCells SurfelPlacement::cells_on(const std::vector<std::uint32_t>& roots,
                                                     const std::vector<Cell>& chosen, std::uint32_t count,
                                                     const Weights& weights, const LastCut& last) {
     CutCells wanted = cells_of(chosen, count, weights, nullptr);
     if (last.cut == nullptr) return wanted;
-    std::vector<std::uint32_t> patches;
-    patches.reserve(roots.size());
-    for (const Root& root : roots) patches.push_back(root.patch);
     const FollowedCut followed =
-        follow(tree_, patches, {*last.cut, wanted.cut}, {count, last.most_new, last.gain});
+        follow(tree_, roots, {*last.cut, wanted.cut}, {count, last.most_new, last.gain});
     if (followed.left.all == 0) return wanted;
     std::vector<Cell> whole;
     for (const Cell& item : whole_items(roots, weights)) {
@@ -289,7 +292,7 @@ SurfelPlacement::CutCells SurfelPlacement::emitting_cells(std::uint32_t count, c
 
 /// Appends the surfel of a cell, unless all of its points are in holes.
 void SurfelPlacement::append(SurfelSet& set, const Cell& cell, std::uint32_t points) {
-    std::vector<Cell> parts = cut({{cell.patch, cell.item, cell.scale}}, points,
+    std::vector<Cell> parts = cut({{.patch = cell.patch, .scale = cell.scale}}, points,
                                   [&](const Cell& part) { return tree_[part.patch].area; }, {});
     // At random: neighbours in this order share sources of light among them.
     std::ranges::sort(parts, {},
@@ -300,12 +303,9 @@ void SurfelPlacement::append(SurfelSet& set, const Cell& cell, std::uint32_t poi
     double area = 0.0;
     for (const Cell& part : parts) {
         const Patch& of_part = tree_[part.patch];
-        const gpu::TraceTriangle& triangle = scene_.triangles[of_part.point.triangle];
-        if (is_hole(*scene_.materials[triangle.material], triangle, of_part.point.weights)) continue;
-        const auto second = scene_.second_emission.find(of_part.point.triangle);
-        set.points.push_back(cell_point(triangle,
-                                        second == scene_.second_emission.end() ? nullptr : &second->second,
-                                        of_part.point, of_part.area * cell.scale, index));
+        const PlacedMesh mesh = surfaces_.mesh(of_part.point.solid);
+        if (is_hole(mesh, of_part.point.triangle, of_part.point.weights)) continue;
+        set.points.push_back(cell_point(mesh, of_part.point, of_part.area * cell.scale, index));
         set.point_places.push_back(of_part.point);
         area += of_part.area * cell.scale;
     }
@@ -325,7 +325,7 @@ void SurfelPlacement::append(SurfelSet& set, const Cell& cell, std::uint32_t poi
                            .own = static_cast<float>(1.0 / cell.scale)});
     set.surfel_places.push_back(
         set.point_places[first + static_cast<std::size_t>(middle - points_of_cell.begin())]);
-    set.item_of.push_back(cell.item);
+    set.item_of.push_back(patch.item);
     set.patches.push_back(patch.id);
     set.branches.push_back(cell.branch);
     set.ids.push_back(
@@ -334,10 +334,8 @@ void SurfelPlacement::append(SurfelSet& set, const Cell& cell, std::uint32_t poi
 
 SurfelSet SurfelPlacement::place(const SurfelCounts& counts, std::span<const std::vector<Focus>> foci,
                                  std::span<const GuidePoint> guide, const LastCut& last) {
-    if (tree_.size() > scene_.triangles.size() +
-                           std::size_t{most_patches_a_surfel} * (counts.reflecting + counts.emitting)) {
-        plant();
-    }
+    const std::size_t most_halves = most_patches_a_surfel * (counts.reflecting + counts.emitting);
+    if (tree_.size() > reflecting_.size() + emitting_.size() + most_halves) plant();
     SurfelSet set;
     const auto append_all = [&](CutCells of, std::uint32_t points) {
         for (const Cell& cell : of.cells) append(set, cell, points);

@@ -1,18 +1,15 @@
 #pragma once
 
 #include <algorithm>
-#include <array>
 #include <cstddef>
 #include <cstdint>
-#include <map>
-#include <memory>
 #include <span>
 #include <vector>
 
-#include "engine/shared_array.hpp"
 #include "renderer/gpu/gpu_types.hpp"
 #include "renderer/passes/surfels/patch_cut.hpp"
 #include "renderer/passes/surfels/patch_tree.hpp"
+#include "renderer/passes/surfels/scene_surfaces.hpp"
 #include "renderer/passes/surfels/surfel_focus.hpp"
 
 namespace candela {
@@ -33,20 +30,6 @@ struct SurfelSet {
     std::uint32_t emitting_count = 0;  ///< surfels that emit light: the last ones
     PatchCut cut;                      ///< whose cells they are
     ChangesLeft left;                  ///< until it is the cut that is wanted
-};
-
-/// What a triangle looks like whose emission lies by second texture coordinates.
-struct SecondEmission {
-    std::array<glm::vec2, 3> uvs{};            ///< the second, by corner
-    std::shared_ptr<const Image> base_colour;  ///< which lies by those of the triangle; null: none
-};
-
-/// The triangles of a scene, on which surfels are placed.
-struct SceneTriangles {
-    std::vector<gpu::TraceTriangle> triangles;
-    std::vector<std::uint32_t> item_of;                      ///< by triangle: index into SceneGeometry::items
-    SharedArray<std::shared_ptr<const Material>> materials;  ///< null where no triangle has the index
-    std::map<std::uint32_t, SecondEmission> second_emission{};  ///< by triangle, of those that have it
 };
 
 /// Where more cells are wanted, the trees are first cut into so many branches: pixels far from the surfels of
@@ -96,7 +79,7 @@ struct LastCut {
     double gain = 1.0;              ///< CutLimits
 };
 
-/// Places surfels on the triangles that reflect light, and likewise on those that emit it, on both sides
+/// Places surfels on the surfaces that reflect light, and likewise on those that emit it, on both sides
 /// where the material is double-sided. The surfaces of an item are the root of a tree of patches. A cell is a
 /// patch: the trees are cut where the sum of shares (GuidePoint) and of area times density (density_at) is
 /// greatest, weighted by how much surfaces bend (Patch::bend), until there are as many cells as are wanted.
@@ -109,27 +92,23 @@ struct LastCut {
 /// of `place` only: the trees are kept between calls just to save time.
 class SurfelPlacement {
  public:
-    SurfelPlacement(SceneTriangles scene, std::uint32_t seed);
+    SurfelPlacement(SceneSurfaces surfaces, std::uint32_t seed);
     SurfelPlacement(const SurfelPlacement&) = delete;
     SurfelPlacement& operator=(const SurfelPlacement&) = delete;
     ~SurfelPlacement() = default;
 
-    /// `foci`: by item, in the triangles' space; an item without any has the density of a focus everywhere.
-    /// Empty: no item has any. `guide`: on these triangles; empty: only area and density count. `last`: the
+    [[nodiscard]] const SceneSurfaces& surfaces() const { return surfaces_; }
+
+    /// `foci`: by item, in its shape's space; an item without any has the density of a focus everywhere.
+    /// Empty: no item has any. `guide`: on these surfaces; empty: only area and density count. `last`: the
     /// trees are cut as then, but for few patches: see follow.
     [[nodiscard]] SurfelSet place(const SurfelCounts& counts, std::span<const std::vector<Focus>> foci = {},
                                   std::span<const GuidePoint> guide = {}, const LastCut& last = {});
 
  private:
-    /// The surfaces of an item.
-    struct Root {
-        std::uint32_t patch;
-        std::uint32_t item;
-    };
     /// A cell that surfels are placed on.
     struct Cell {
         std::uint32_t patch = 0;
-        std::uint32_t item = 0;
         double scale = 1.0;  ///< how many times its area it stands for
         std::uint32_t branch = 0;
         std::vector<std::uint32_t> guides{};  ///< indices of the guide's points in it
@@ -156,14 +135,15 @@ class SurfelPlacement {
     };
 
     void plant();
-    [[nodiscard]] std::vector<Root> roots_of(bool emitting);
+    [[nodiscard]] std::vector<std::uint32_t> roots_of(bool emitting);
     [[nodiscard]] Weights weights_of(std::span<const std::vector<Focus>> foci,
                                      std::span<const GuidePoint> guide) const;
     [[nodiscard]] double weight_of(const Cell& cell, const Weights& weights) const;
-    [[nodiscard]] std::vector<Cell> share_items(const std::vector<Root>& roots, double most,
+    [[nodiscard]] std::vector<Cell> share_items(const std::vector<std::uint32_t>& roots, double most,
                                                 const Weights& weights) const;
-    [[nodiscard]] std::vector<Cell> whole_items(const std::vector<Root>& roots, const Weights& weights) const;
-    [[nodiscard]] CutCells cells_on(const std::vector<Root>& roots, const std::vector<Cell>& chosen,
+    [[nodiscard]] std::vector<Cell> whole_items(const std::vector<std::uint32_t>& roots,
+                                                const Weights& weights) const;
+    [[nodiscard]] CutCells cells_on(const std::vector<std::uint32_t>& roots, const std::vector<Cell>& chosen,
                                     std::uint32_t count, const Weights& weights, const LastCut& last);
     [[nodiscard]] CutCells reflecting_cells(std::uint32_t count, const Weights& weights, const LastCut& last);
     [[nodiscard]] CutCells emitting_cells(std::uint32_t count, const Weights& weights, const LastCut& last);
@@ -175,11 +155,11 @@ class SurfelPlacement {
                                         const Cutting& cutting);
     void append(SurfelSet& set, const Cell& cell, std::uint32_t points);
 
-    SceneTriangles scene_;
+    SceneSurfaces surfaces_;
     std::uint32_t seed_;
     PatchTree tree_;
-    std::vector<Root> reflecting_;
-    std::vector<Root> emitting_;
+    std::vector<std::uint32_t> reflecting_;  // roots
+    std::vector<std::uint32_t> emitting_;
 };
 
 }  // namespace candela

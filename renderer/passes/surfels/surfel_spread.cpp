@@ -5,7 +5,7 @@
 #include <glm/common.hpp>
 #include <glm/geometric.hpp>
 #include <glm/matrix.hpp>
-#include <span>
+#include <unordered_map>
 #include <utility>
 
 #include <candela/graph/execute.hpp>
@@ -20,33 +20,6 @@ std::vector<glm::mat3> shapes_of(const ScenePlacement& placement) {
         shapes.push_back(shape_of(placement.world[i]));
     }
     return shapes;
-}
-
-/// Whether the emission lies by second texture coordinates.
-bool has_second_emission(const Material& material) {
-    return material.second_uvs.emissive && material.emissive_texture != nullptr;
-}
-
-/// The triangles of the meshes, also where they are deformed: where surfels are must not depend on which
-/// deformation came first.
-SceneTriangles triangles_of(const SceneLayout& layout, const PlacementKey& key) {
-    SceneTriangles scene{.triangles = {}, .item_of = {}, .materials = layout.materials};
-    layout.visit_solids([&](std::uint32_t number) {
-        const SceneLayout::Drawable& drawable = layout.drawables[number];
-        const PlacedMesh mesh{.drawn = *drawable.drawn,
-                              .vertices = drawable.primitive().vertices,
-                              .matrix = glm::mat4(key.shapes[drawable.item]),
-                              .mirrored = layout.geometry.items[drawable.item].mirrored};
-        for (std::uint32_t i = 0; i < mesh.count(); ++i) {
-            const auto id = static_cast<std::uint32_t>(scene.triangles.size());
-            scene.triangles.push_back(mesh.traced(i, id));
-            if (!has_second_emission(*drawable.primitive().material)) continue;
-            scene.second_emission[id] = {mesh.second_uvs(i),
-                                         drawable.primitive().material->base_colour_texture};
-        }
-        scene.item_of.insert(scene.item_of.end(), mesh.count(), drawable.item);
-    });
-    return scene;
 }
 
 /// Transform from an item's shape space to the world: a rotation, a translation, and the rounding error of
@@ -124,9 +97,9 @@ SpreadSurfels spread(const SpreadSurfels* last, const SceneLayout& layout, const
     const bool same_items = last != nullptr && last->placement_key == now.placement_key;
     const auto is_done = [&](const ChangesLeft& left) { return (wishes.moves ? left.gains : left.all) == 0; };
     if (same_items && last->key == now.key && is_done(last->set->left)) return *last;
-    now.placement = same_items
-                        ? last->placement
-                        : std::make_shared<SurfelPlacement>(triangles_of(layout, now.placement_key), seed);
+    now.placement =
+        same_items ? last->placement
+                   : std::make_shared<SurfelPlacement>(SceneSurfaces(layout, now.placement_key.shapes), seed);
     LastCut last_cut;
     if (last != nullptr && wishes.most_new > 0)
         last_cut = {&last->set->cut, wishes.most_new, wishes.moves ? gain_in_motion : 1.0};
@@ -135,51 +108,80 @@ SpreadSurfels spread(const SpreadSurfels* last, const SceneLayout& layout, const
     return now;
 }
 
-/// Moves surfels and points with the triangles that they were placed on, of items that are deformed.
-class Deformer {
+/// Leads from the space of an item's shape to the world.
+struct ItemTransform {
+    glm::mat4 matrix;
+    glm::mat3 normal_matrix;
+
+    void apply(glm::vec3& position, glm::vec3& normal) const {
+        position = glm::vec3(matrix * glm::vec4(position, 1.0F));
+        normal = glm::normalize(normal_matrix * normal);
+    }
+};
+
+/// Moves surfels and points to where their items are, or with the triangles that they were placed on, where
+/// these are deformed.
+class SurfelMover {
  public:
-    Deformer(const SceneLayout& layout, const ScenePlacement& placement)
-        : layout_(layout), placement_(placement) {
-        layout.visit_solids([&](std::uint32_t number) {
-            solids_.push_back(number);
-            first_triangles_.push_back(triangle_count_);
-            const std::size_t indices = layout.drawables[number].primitive().indices.size();
-            triangle_count_ += static_cast<std::uint32_t>(indices / 3);
-        });
+    SurfelMover(const SpreadSurfels& spread, const ScenePlacement& placement)
+        : spread_(spread), placement_(placement) {}
+
+    void apply(SurfelSet& set, std::size_t i) {
+        const std::uint32_t item = set.item_of[i];
+        const Deformation* const deformation = find_deformation(placement_.deformed, item);
+        if (deformation != nullptr) {
+            deform(set, i, *deformation);
+            return;
+        }
+        const ItemTransform& transform = transform_of(item);
+        gpu::Surfel& surfel = set.surfels[i];
+        transform.apply(surfel.position, surfel.normal);
+        for (std::uint32_t p = surfel.first_point; p < surfel.first_point + surfel.point_count; ++p) {
+            transform.apply(set.points[p].position, set.points[p].normal);
+        }
     }
 
+ private:
     /// Where a point of a triangle is now.
     struct Moved {
         glm::vec3 position;
-        glm::vec3 normal;  ///< unit; 0 if the triangle has no area
-        float stretch;     ///< area of the triangle / that in the mesh
+        glm::vec3 normal;  // unit; 0 if the triangle has no area
+        float stretch;     // area of the triangle / that in the mesh
     };
-    [[nodiscard]] Moved moved(const SurfacePoint& point) const {
-        const auto next = std::ranges::upper_bound(first_triangles_, point.triangle);
-        const auto index = static_cast<std::size_t>(next - first_triangles_.begin()) - 1;
-        const SceneLayout::Drawable& drawable = layout_.drawables[solids_[index]];
-        const std::uint32_t i = point.triangle - first_triangles_[index];
-        PlacedMesh mesh = candela::placed_in_world(layout_, drawable, placement_);
-        const Triangle t = mesh.triangle(i);
-        mesh.vertices = drawable.primitive().vertices;
-        const Triangle in_mesh = mesh.triangle(i);
+
+    const ItemTransform& transform_of(std::uint32_t item) {
+        const auto [found, is_new] = transforms_.try_emplace(item);
+        if (is_new) {
+            const glm::mat4 matrix =
+                world_from_shape(placement_.world[item], spread_.placement_key.shapes[item]);
+            found->second = {matrix, glm::transpose(glm::inverse(glm::mat3(matrix)))};
+        }
+        return found->second;
+    }
+
+    [[nodiscard]] Moved moved(const SurfacePoint& point, const Deformation& deformation) const {
+        PlacedMesh mesh = spread_.placement->surfaces().mesh(point.solid);
+        mesh.matrix = placement_.world[spread_.placement->surfaces().solids()[point.solid].item];
+        const Triangle in_mesh = mesh.triangle(point.triangle);
+        mesh.vertices = (*deformation.vertices)[mesh.drawn.index_in_mesh];
+        const Triangle t = mesh.triangle(point.triangle);
         const glm::vec3 cross = glm::cross(t.b - t.a, t.c - t.a);
         const float size = glm::length(cross);
         const glm::vec3 front = size > 0.0F ? cross / size : glm::vec3(0.0F);
-        return {.position = t.a + point.weights.x * (t.b - t.a) + point.weights.y * (t.c - t.a),
+        return {.position = position_of(t, point.weights),
                 .normal = point.back ? -front : front,
                 .stretch = size / glm::length(glm::cross(in_mesh.b - in_mesh.a, in_mesh.c - in_mesh.a))};
     }
 
-    void apply(SurfelSet& set, std::size_t i) const {
+    void deform(SurfelSet& set, std::size_t i, const Deformation& deformation) const {
         gpu::Surfel& surfel = set.surfels[i];
-        const Moved centre = moved(set.surfel_places[i]);
+        const Moved centre = moved(set.surfel_places[i], deformation);
         surfel.position = centre.position;
         surfel.normal = centre.normal;
         const float area_before = surfel.area;
         surfel.area = 0.0F;
         for (std::uint32_t p = surfel.first_point; p < surfel.first_point + surfel.point_count; ++p) {
-            const Moved at = moved(set.point_places[p]);
+            const Moved at = moved(set.point_places[p], deformation);
             set.points[p].position = at.position;
             set.points[p].normal = at.normal;
             set.points[p].area *= at.stretch;
@@ -188,12 +190,9 @@ class Deformer {
         surfel.width2 *= surfel.area / area_before;
     }
 
- private:
-    const SceneLayout& layout_;
+    const SpreadSurfels& spread_;
     const ScenePlacement& placement_;
-    std::vector<std::uint32_t> solids_;           // in the order of triangles_of
-    std::vector<std::uint32_t> first_triangles_;  // their ids, in the same order
-    std::uint32_t triangle_count_ = 0;
+    std::unordered_map<std::uint32_t, ItemTransform> transforms_;  // of items that have surfels
 };
 
 }  // namespace
@@ -222,33 +221,11 @@ glm::mat3 shape_of(const glm::mat4& world) {
     return is_flat ? glm::mat3(world) : glm::mat3(rounded);
 }
 
-SurfelSet placed_in_world(const SpreadSurfels& spread, const SceneLayout& layout,
-                          const ScenePlacement& placement) {
-    std::vector<glm::mat4> matrices;
-    std::vector<glm::mat3> normal_matrices;
-    for (std::size_t i = 0; i < placement.world.size(); ++i) {
-        matrices.push_back(world_from_shape(placement.world[i], spread.placement_key.shapes[i]));
-        normal_matrices.push_back(glm::transpose(glm::inverse(glm::mat3(matrices.back()))));
-    }
-    const Deformer deformer(layout, placement);
+SurfelSet placed_in_world(const SpreadSurfels& spread, const ScenePlacement& placement) {
+    SurfelMover mover(spread, placement);
     SurfelSet set = *spread.set;
     for (std::size_t i = 0; i < set.surfels.size(); ++i) {
-        if (placement.deformed.contains(set.item_of[i])) {
-            deformer.apply(set, i);
-            continue;
-        }
-        gpu::Surfel& surfel = set.surfels[i];
-        const glm::mat4& matrix = matrices[set.item_of[i]];
-        const glm::mat3& normal_matrix = normal_matrices[set.item_of[i]];
-        surfel.position = glm::vec3(matrix * glm::vec4(surfel.position, 1.0F));
-        surfel.normal = glm::normalize(normal_matrix * surfel.normal);
-        for (std::uint32_t p = surfel.first_point; p < surfel.first_point + surfel.point_count; ++p) {
-            gpu::CellPoint& point = set.points[p];
-            point.position = glm::vec3(matrix * glm::vec4(point.position, 1.0F));
-            point.normal = glm::normalize(normal_matrix * point.normal);
-        }
-    }
-    for (std::size_t i = 0; i < set.surfels.size(); ++i) {
+        mover.apply(set, i);
         set.surfels[i].seed = static_cast<std::uint32_t>(set.ids[i]);
     }
     return set;

@@ -61,8 +61,7 @@ struct SpreadSurfels {
 };
 
 /// The surfels in world space, of items where they are now, and moved with the triangles of deformed ones.
-[[nodiscard]] SurfelSet placed_in_world(const SpreadSurfels& spread, const SceneLayout& layout,
-                                        const ScenePlacement& placement);
+[[nodiscard]] SurfelSet placed_in_world(const SpreadSurfels& spread, const ScenePlacement& placement);
 
 /// Set by the renderer before each frame, with VplSettings::updates.
 struct UpdateClock {

@@ -45,9 +45,9 @@ bool has_moved(const ScenePlacement& before, const ScenePlacement& now, std::uin
 }
 
 /// Divides new cells, and those again that have moved, or where something in a changed box is or was; those
-/// of `last` stay elsewhere. All, if `changed` is none. `first`: as for divide_cell.
+/// of `last` stay elsewhere. All, if `changed` is none. `order`: as for divide_cell.
 DividedCells divide_cells(const SurfelSet& set, const TracedScene& scene,
-                          std::span<const std::uint32_t> first, float ray_offset, const DividedCells* last,
+                          std::span<const std::uint32_t> order, float ray_offset, const DividedCells* last,
                           const std::optional<std::vector<Box>>& changed) {
     std::unordered_map<std::uint64_t, const CellDivision*> known;
     for (std::size_t i = 0; last != nullptr && changed && i < last->ids.size(); ++i) {
@@ -63,7 +63,7 @@ DividedCells divide_cells(const SurfelSet& set, const TracedScene& scene,
     for (std::size_t i = 0; i < set.surfels.size(); ++i) {
         const auto found = known.find(set.ids[i]);
         const bool is_known = found != known.end() && stays(i);
-        now.cells.push_back(is_known ? *found->second : divide_cell(set, i, scene, first, ray_offset));
+        now.cells.push_back(is_known ? *found->second : divide_cell(set, i, scene, order, ray_offset));
     }
     return now;
 }
@@ -139,10 +139,10 @@ void place_surfels(const Gpu& gpu, Execution& run, const SurfelNode& node) {
     const TracedScene traced{*run.value(node.tracing.hierarchy), run.value(node.scene.layout),
                              run.value(node.scene.placement)};
     const float ray_offset = run.value(node.tracing.metrics).ray_offset();
-    const SurfelSet whole = placed_in_world(run.value(node.spread), traced.layout, traced.placement);
+    const SurfelSet whole = placed_in_world(run.value(node.spread), traced.placement);
     const DivisionKey key{ray_offset, divides_emitters(whole)};
     const auto changed = node.known.outdated(run, run.value(node.motion), key, {});
-    DividedCells cells = divide_cells(whole, traced, first_triangles(traced.layout), ray_offset,
+    DividedCells cells = divide_cells(whole, traced, order_of_solids(traced.layout), ray_offset,
                                       run.previous(node.divided), changed);
     SurfelSet set = divided(whole, cells.cells);
     run.set(node.divided, std::move(cells));
