@@ -78,17 +78,17 @@ vec3 to_world(Hit hit, vec3 normal) {
 
 vec3 to_mesh(vec4 rows[3], vec4 place) { return vec3(dot(rows[0], place), dot(rows[1], place), dot(rows[2], place)); }
 
-// Whether a triangle comes before the one that was hit at the same distance: its entity has the lower index, or is the same
-// and the triangle has the lower id. This does not depend on what has come and gone before.
-bool comes_first(uint instance, uint id, Hit hit) {
-    if (hit.triangle == NO_TRIANGLE) return false;
-    uint entity = node_at(instance).children.y;
+// Whether `found` comes before `hit`: it is nearer, or as near and its entity has the lower index, or is the same and the
+// triangle has the lower id. This does not depend on what has come and gone before.
+bool comes_first(Hit found, Hit hit) {
+    if (found.t < hit.t || hit.triangle == NO_TRIANGLE) return found.t < hit.t;
+    uint entity = node_at(found.instance).children.y;
     uint other = node_at(hit.instance).children.y;
-    return entity < other || (entity == other && id < hit.id);
+    return entity < other || (entity == other && found.id < hit.id);
 }
 
-// Two-sided test of Möller and Trumbore (1997). Returns whether the triangle is hit before `hit`, or at the same distance
-// comes first; then it becomes the hit.
+// Two-sided test of Möller and Trumbore (1997). Returns whether the triangle is hit no farther away than `hit`; then it
+// becomes the hit.
 bool intersect_triangle(uint index, LocalRay ray, float t_min, inout Hit hit) {
     TraceTriangle triangle = triangle_at(index);
     vec3 p = cross(ray.direction, triangle.edge_ac);
@@ -100,11 +100,7 @@ bool intersect_triangle(uint index, LocalRay ray, float t_min, inout Hit hit) {
     vec3 q = cross(s, triangle.edge_ab);
     float v = dot(ray.direction, q) * inverse;
     float t = dot(triangle.edge_ac, q) * inverse;
-    bool inside = u >= 0.0 && v >= 0.0 && u + v <= 1.0 && t > t_min;
-    bool nearer = t < hit.t;
-    // A loop of one iteration, which drivers without branches leave out unless there is a tie.
-    for (bool ties = inside && t == hit.t; ties; ties = false) nearer = comes_first(ray.instance, triangle.id, hit);
-    if (!inside || !nearer) return false;
+    if (!(u >= 0.0 && v >= 0.0 && u + v <= 1.0 && t > t_min && t <= hit.t)) return false;
     hit = Hit(t, vec2(u, v), index, triangle.id, ray.instance);
     return true;
 }
@@ -158,16 +154,20 @@ Hit trace(vec3 origin, vec3 direction, float t_min, float t_max, bool any) {
     uint next = 0u;     // of the triangles in the current leaf
     uint end = 0u;
     while (depth > 0u || next < end) {
-        // Goes on until a triangle is hit, if it may have a hole there, or if any hit will do. Whether there is a hole is
-        // asked outside this loop, because drivers without branches execute all of a loop's code in each iteration.
+        // Goes on until a triangle is hit, if it may have a hole there or is as near as the last one, or if any hit will
+        // do. What that means is asked outside this loop, because drivers without branches execute all of a loop's code
+        // in each iteration.
         Hit found = hit;
         bool stop = false;
         while (!stop && (depth > 0u || next < end)) {
             while (depth > 0u && next == end) {
                 uint child = stack[--depth];
-                // Loops of at most one iteration, which such drivers leave out where no ray leaves or enters an instance.
-                for (; depth < outside; outside = 0u) ray = LocalRay(origin, direction, safe_inverse(direction), 0u);
-                while ((child & 7u) == INSTANCE_CHILD) {
+                // A loop of at most one iteration, which such drivers leave out where no ray leaves or enters an instance.
+                bool enters = (child & 7u) == INSTANCE_CHILD;
+                for (bool crosses = enters || depth < outside; crosses; crosses = false) {
+                    ray = LocalRay(origin, direction, safe_inverse(direction), 0u);
+                    outside = 0u;
+                    if (!enters) break;
                     uint instance = child >> 3u;
                     WideNode node = node_at(instance);
                     vec4 rows[3] = mesh_from_world(node);
@@ -188,13 +188,12 @@ Hit trace(vec3 origin, vec3 direction, float t_min, float t_max, bool any) {
             }
             while (!stop && next < end) {
                 if (!intersect_triangle(next++, ray, t_min, found)) continue;
-                bool masked = (found.id & TRIANGLE_MASKED) != 0u;
-                if (!masked) hit = found;
-                stop = masked || any;
+                stop = any || found.t == hit.t || (found.id & TRIANGLE_MASKED) != 0u;
+                if (!stop) hit = found;
             }
         }
         bool other = found.triangle != hit.triangle || found.instance != hit.instance;
-        if (other && !is_hole(triangle_at(found.triangle), found.barycentric)) hit = found;
+        if (other && comes_first(found, hit) && !is_hole(triangle_at(found.triangle), found.barycentric)) hit = found;
         if (any && hit.triangle != NO_TRIANGLE) return hit;
     }
     return hit;
