@@ -238,6 +238,8 @@ struct CellPoint {
     vec2 uv;        // MATERIAL_SECOND_UV_EMISSIVE: the second
     uint surfel;    // index of the surfel whose cell it belongs to
     uint colour;    // of the vertices, interpolated, in that case × the base colour's texture: as TraceTriangle::colour_a
+    vec3 middle;    // metres, of the part that it represents: the light that it sends comes from there
+    float pad0 DEFAULT(0.0F);
 };
 
 // Light that a cell point receives from the lights and from surfaces that emit light, and that it emits.

@@ -44,3 +44,23 @@ def boxes():
     scene.light("sun", "directional", DAYLIGHT, 3.0, **looking((0.6, 0.7, 0.4), (0, 0, 0)))
     scene.camera(50, 0.05, **looking((9, 4.5, 12), (0, 0.5, 0)))
     return scene
+
+
+def balls(count, rings):
+    """Balls of one mesh, scattered over a field under a sun: 2·rings·(rings - 1) triangles each."""
+    scene, numbers = Scene(), random.Random(7)
+    side = math.ceil(math.sqrt(count))
+    half = 0.8 * side
+    scene.place("field", flat([ground((-half, -half), (half, half))]), scene.material("green", GREEN))
+    angles = [math.pi * ring / rings for ring in range(rings + 1)]
+    profile = [(0.5 * math.sin(a), -0.5 * math.cos(a)) for a in angles]
+    profile[0], profile[-1] = (0, -0.5), (0, 0.5)
+    ball = scene.mesh("ball", lathe(profile, rings), scene.material("white", WHITE))
+    for i in range(count):
+        size = round(numbers.uniform(0.7, 1.3), 3)
+        x = round(1.6 * (i % side) - half + numbers.uniform(0, 0.5), 3)
+        z = round(1.6 * (i // side) - half + numbers.uniform(0, 0.5), 3)
+        scene.node("ball", mesh=ball, translation=[x, 0.5 * size, z], scale=[size] * 3)
+    scene.light("sun", "directional", DAYLIGHT, 3.0, **looking((0.2, 0.8, 0.6), (0, 0, 0)))
+    scene.camera(50, 0.05, **looking((0.3, 1.6, 0.2 * half), (0.3, 1.3, 0.2 * half - 1.0)))
+    return scene

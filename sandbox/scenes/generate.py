@@ -16,7 +16,7 @@ sys.dont_write_bytecode = True  # otherwise importing the modules would leave fi
 from atrium import atrium
 from ball import ball
 from court import court
-from fields import boxes, plane
+from fields import balls, boxes, plane
 from glass import glass
 from gloss import bath, metals
 from halls import fins, hall
@@ -48,6 +48,8 @@ SHIPPED = {
 ON_DEMAND = {
     "atrium": atrium,
     "ball": ball,
+    "balls-20000": lambda: balls(20000, 32),
+    "balls-100000": lambda: balls(100000, 71),
     "hall-4096": lambda: hall(4096),
     "rooms-6": lambda: rooms(6),
     "street": street,

@@ -35,7 +35,7 @@ vec3 from_lit_cell(vec3 position, vec3 normal, Surfel to, CellLight cell) {
         vec3 flux = direct.albedo * direct.arriving;
         if (flux == vec3(0.0)) continue;
         CellPoint point = cell_points[to.first_point + i];
-        sum += flux / PI * disc_term(point.position, point.normal, point.area / PI, position, normal);
+        sum += flux / PI * disc_term(point.middle, point.normal, point.area / PI, position, normal);
     }
     return sum;
 }

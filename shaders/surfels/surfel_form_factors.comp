@@ -28,7 +28,7 @@ float form_factor(Surfel from, Surfel to) {
     float sum = 0.0;
     for (uint i = 0u; i < to.point_count; ++i) {
         CellPoint point = cell_points[to.first_point + i];
-        sum += point.area / PI * disc_term(point.position, point.normal, point.area / PI, from.position, from.normal);
+        sum += point.area / PI * disc_term(point.middle, point.normal, point.area / PI, from.position, from.normal);
     }
     return sum;
 }

@@ -122,7 +122,7 @@ vec3 irradiance_from_cell(Surfel emitter, CellPoint point) {
     vec3 target = emitter.position + ray_offset * emitter.normal;
     for (uint i = emitter.first_point; i < emitter.first_point + emitter.point_count; ++i) {
         CellPoint from = cell_points[i];
-        float term = disc_term(from.position, from.normal, from.area / PI, point.position, point.normal);
+        float term = disc_term(from.middle, from.normal, from.area / PI, point.position, point.normal);
         if (term <= 0.0) continue;
         vec3 light = from.area * term * emission_at(materials[from.material], from.uv);
         sum += light;

@@ -29,7 +29,7 @@ void write_points(Surfel surfel, vec3 indirect, Shown shown) {
         DirectPoint direct = direct_points[i];
         vec3 reflected = direct.albedo * (direct.arriving + point.area * indirect);
         vec3 flux = emitted_share * direct.emitted + reflected_share * reflected - point.area * shown.mean;
-        lit_points[i] = LitPoint(point.position, shown.own * point.area, point.normal, 0.0, shown.own * flux, 0.0);
+        lit_points[i] = LitPoint(point.middle, shown.own * point.area, point.normal, 0.0, shown.own * flux, 0.0);
     }
 }
 

@@ -80,7 +80,8 @@ void add_cell(SurfelSet& set, const std::vector<glm::vec3>& positions,
                               .area = 1.0F / static_cast<float>(count),
                               .uv = glm::vec2(0.0F),
                               .surfel = static_cast<std::uint32_t>(set.surfels.size()),
-                              .colour = 0xffffffffU});
+                              .colour = 0xffffffffU,
+                              .middle = positions[i]});
         set.point_places.push_back(
             {.solid = 0, .triangle = first + i, .weights = glm::vec2(0.3F), .back = false});
     }

@@ -3,9 +3,11 @@
 #include <doctest/doctest.h>
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <cstdint>
 #include <glm/geometric.hpp>
+#include <glm/gtc/constants.hpp>
 #include <glm/gtc/matrix_transform.hpp>
 #include <glm/gtc/quaternion.hpp>
 #include <glm/matrix.hpp>
@@ -75,6 +77,36 @@ std::size_t new_surfels(const SurfelSet& set, const SurfelSet& before) {
 std::ptrdiff_t left_surfels(const SurfelSet& set) {
     return std::ranges::count_if(set.surfels,
                                  [](const gpu::Surfel& surfel) { return surfel.position.x < 0.0F; });
+}
+
+/// Form factor of the points of cells on the floor z = 0, as sinking discs (shaders/README.md), at a wall's
+/// foot: at (0, y, z), facing +x.
+double lit_share(const SurfelSet& set, double y, double z) {
+    double share = 0.0;
+    for (const gpu::CellPoint& point : set.points) {
+        const auto area = static_cast<double>(point.area);
+        const double radius2 = area / glm::pi<double>();
+        const glm::dvec3 apart = glm::dvec3(point.middle) - glm::dvec3(0.0, y, z);
+        const double sunk = z + radius2 / std::sqrt(radius2 + glm::dot(apart, apart));
+        const double distance2 = apart.x * apart.x + apart.y * apart.y + sunk * sunk;
+        share += area * apart.x * sunk / (distance2 * distance2 * glm::pi<double>());
+    }
+    return share;
+}
+
+/// The same of the whole floor from x = 0 to `length`, |y| < `length`: the sum over its edges of the angle
+/// that each is seen under, by the normal of the plane through it (Lambert, "Photometria", 1760).
+double exact_share(double length, double y, double z) {
+    const std::array<glm::dvec3, 4> corners{
+        {{0.0, -length, 0.0}, {length, -length, 0.0}, {length, length, 0.0}, {0.0, length, 0.0}}};
+    double sum = 0.0;
+    for (std::size_t i = 0; i < 4; ++i) {
+        const glm::dvec3 eye(0.0, y, z);
+        const glm::dvec3 a = glm::normalize(corners[i] - eye), b = glm::normalize(corners[(i + 1) % 4] - eye);
+        const glm::dvec3 normal = glm::cross(a, b);
+        sum += std::atan2(glm::length(normal), glm::dot(a, b)) * normal.x / glm::length(normal);
+    }
+    return std::abs(sum) / glm::two_pi<double>();
 }
 
 double total_area(const SurfelSet& set) {
@@ -429,6 +461,27 @@ TEST_CASE("a hundred thousand objects of one mesh are placed on without a list o
     // About 512 of them are chosen, each at random: off by 1 / √512, 4.4 %. Four times as much is hardly
     // ever.
     CHECK(total_area(set) / (area * count) == doctest::Approx(1.0).epsilon(0.09));
+}
+
+TEST_CASE("the points of a flat floor's cells light the foot of a wall evenly") {
+    constexpr double length = 6.0;
+    const auto floor = parallelogram({0, -length, 0}, {length, 0, 0}, {0, 2 * length, 0}, grey());
+    const SurfelSet set = placed(surfaces_of({floor}), {.reflecting = 72}, test_seed());
+    // A tenth of a cell's width above the floor, where the points are 2.5 times as far from each other.
+    constexpr double height = 0.1;
+    constexpr int places = 400;
+    double mean = 0.0, squares = 0.0;
+    for (int i = 0; i < places; ++i) {
+        const double y = 8.0 * i / places - 4.0;
+        const double part = lit_share(set, y, height) / exact_share(length, y, height);
+        mean += part / places;
+        squares += part * part / places;
+    }
+    // Of regular squares of the same area it is 0.93 with a deviation of 0.01. The random shapes of parts
+    // make it 0.93 ± 0.013 by the seed, with 0.04; points at random places in them 0.85 with 0.12.
+    CHECK(mean > 0.87);
+    CHECK(mean < 0.99);
+    CHECK(std::sqrt(squares - mean * mean) < 0.07);
 }
 
 TEST_CASE("another seed gives another set, and empty input gives none") {

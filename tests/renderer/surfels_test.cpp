@@ -2,12 +2,10 @@
 
 #include <doctest/doctest.h>
 
-#include <algorithm>
 #include <cmath>
 #include <glm/geometric.hpp>
 #include <glm/gtc/constants.hpp>
 #include <glm/gtc/quaternion.hpp>
-#include <limits>
 
 #include "shaders/bindings.glsl"
 #include "tests/renderer/path_fixture.hpp"
@@ -180,17 +178,19 @@ TEST_CASE_FIXTURE(SurfelTests, "the light of a dim face hardly depends on the pl
     const glm::vec3 middle(0.33F, 0.3F, 0.39F);
     scene.world.set(scene.camera, looking(middle + glm::vec3(-0.23F, 0.0F, 0.77F), middle));
     scene.world.set(scene.camera, Camera{.vertical_fov = 0.8F});
-    double least = std::numeric_limits<double>::infinity(), most = 0.0;
-    for (std::uint32_t seed = 0; seed < 8; ++seed) {
+    constexpr int seeds = 8;
+    double sum = 0.0, squares = 0.0;
+    for (std::uint32_t seed = 0; seed < seeds; ++seed) {
         Configuration configuration = surfels(512, 64);
         configuration.vpls.seed = seed;
         configuration.visibility.method = VplVisibility::maps;
         configure(configuration);
         const double light = mean(render(scene, {16, 16}));
-        least = std::min(least, light);
-        most = std::max(most, light);
+        sum += light / seeds;
+        squares += light * light / seeds;
     }
-    CHECK(most - least < 0.1 * least);
+    // Over 24 seeds it is 2.3 %; that of eight of them exceeds one and a half times as much in 2 % of cases.
+    CHECK(std::sqrt(squares - sum * sum) < 0.035 * sum);
 }
 
 TEST_CASE_FIXTURE(SurfelTests, "a room on a ground of 1 km has the indirect light that it has alone") {

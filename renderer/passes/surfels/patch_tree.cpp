@@ -99,31 +99,25 @@ SurfacePoint random_point(const std::vector<Fragment>& fragments, const Sums& su
     return point_in(fragments[static_cast<std::size_t>(chosen - sums.area_up_to.begin())], id);
 }
 
-/// Where a fragment has a place, seen along its normal; nullopt: beside it.
-std::optional<SurfacePoint> point_at(const SceneSurfaces& surfaces, const Fragment& fragment,
-                                     const glm::dvec3& place) {
+/// Whether a place is on a fragment, seen along its normal.
+bool is_on(const SceneSurfaces& surfaces, const Fragment& fragment, const glm::dvec3& place) {
     const Corners corners = corners_of(surfaces.triangle(fragment.solid, fragment.triangle), fragment);
     const glm::dvec3 ab = corners[1] - corners[0], ac = corners[2] - corners[0], to = place - corners[0];
     const glm::dvec3 normal = glm::cross(ab, ac);
     const double size2 = glm::dot(normal, normal);
     const double u = glm::dot(glm::cross(to, ac), normal) / size2;
     const double v = glm::dot(glm::cross(ab, to), normal) / size2;
-    if (!(u >= 0.0 && v >= 0.0 && u + v <= 1.0)) return std::nullopt;
-    const glm::vec2 at(u, v);
-    const auto& weights = fragment.corners;
-    return SurfacePoint{fragment.solid, fragment.triangle,
-                        weights[0] + at.x * (weights[1] - weights[0]) + at.y * (weights[2] - weights[0]),
-                        fragment.back};
+    return u >= 0.0 && v >= 0.0 && u + v <= 1.0;
 }
 
-/// The point that stands for a patch. If that is flat, the one in its middle, since the light that it sends
-/// to what is close is then most like that of the whole; a random one where the middle is in a hole of it.
-SurfacePoint point_of(const SceneSurfaces& surfaces, const Patch& patch,
-                      const std::vector<Fragment>& fragments, const Sums& sums) {
-    for (std::size_t i = 0; patch.bend < least_bend && i < fragments.size(); ++i) {
-        if (const auto middle = point_at(surfaces, fragments[i], glm::dvec3(patch.centre))) return *middle;
-    }
-    return random_point(fragments, sums, patch.id);
+/// Sets the points that stand for a patch.
+void set_points(Patch& patch, const SceneSurfaces& surfaces, const std::vector<Fragment>& fragments,
+                const Sums& sums) {
+    patch.point = random_point(fragments, sums, patch.id);
+    const glm::dvec3 centre(patch.centre);
+    patch.has_middle = patch.bend < least_bend && std::ranges::any_of(fragments, [&](const Fragment& part) {
+                           return is_on(surfaces, part, centre);
+                       });
 }
 
 /// The two sides of a cut.
@@ -220,7 +214,7 @@ bool PatchTree::add_half(std::vector<Fragment> fragments, Patch patch) {
     const Sums sums = sum_up(*surfaces_, fragments);
     if (!(sums.moments.area > 0.0)) return false;
     describe(patch, sums.moments);
-    patch.point = point_of(*surfaces_, patch, fragments, sums);
+    set_points(patch, *surfaces_, fragments, sums);
     patches_.push_back(patch);
     fragments_.push_back(std::move(fragments));
     return true;
@@ -233,7 +227,7 @@ bool PatchTree::cut(std::uint32_t patch) {
     if (try_cut(patch)) return true;
     Patch& whole = patches_[patch];
     whole.is_whole = true;
-    whole.point = point_of(*surfaces_, whole, fragments_[patch], sum_up(*surfaces_, fragments_[patch]));
+    set_points(whole, *surfaces_, fragments_[patch], sum_up(*surfaces_, fragments_[patch]));
     return false;
 }
 

@@ -23,7 +23,8 @@ struct Patch {
     /// axes, and the share of `spread2` along its mean normal.
     float bend = 0.0F;
     Box box{};                  ///< around it
-    SurfacePoint point{};       ///< in its middle, or at random; of a root, only if it is whole
+    SurfacePoint point{};       ///< a random point of it; of a root, only if it is whole
+    bool has_middle = false;    ///< it is flat, and `centre` is on it; of a root, only if it is whole
     std::uint32_t first = 0;    ///< of its two halves, which follow each other; 0: not cut yet
     bool is_whole = false;      ///< it can't be cut
     bool cuts_normals = false;  ///< by the direction that its surfaces face, otherwise by position

@@ -32,6 +32,7 @@ std::vector<std::uint64_t> content_hashes(const SurfelSet& set, std::span<const 
         for (std::uint32_t p = first; p < first + surfel.point_count; ++p) {
             gpu::CellPoint place{};
             place.position = set.points[p].position;
+            place.middle = set.points[p].middle;
             place.normal = set.points[p].normal;
             place.area = set.points[p].area;
             hash = hash_bits(hash, place);

@@ -53,8 +53,9 @@ bool has_second_emission(const Material& material) {
     return material.second_uvs.emissive && material.emissive_texture != nullptr;
 }
 
-gpu::CellPoint cell_point(const PlacedMesh& mesh, const SurfacePoint& place, double area,
-                          std::uint32_t surfel) {
+/// `area`: m², that the point of the part represents.
+gpu::CellPoint cell_point(const PlacedMesh& mesh, const Patch& part, double area, std::uint32_t surfel) {
+    const SurfacePoint& place = part.point;
     const Material& material = *mesh.drawn.primitive().material;
     const Triangle placed = mesh.triangle(place.triangle);
     const gpu::TraceTriangle triangle = mesh.traced(place.triangle, 0);
@@ -65,7 +66,8 @@ gpu::CellPoint cell_point(const PlacedMesh& mesh, const SurfacePoint& place, dou
                          .area = static_cast<float>(area),
                          .uv = between(triangle.uv_a, triangle.uv_b, triangle.uv_c, b),
                          .surfel = surfel,
-                         .colour = colour_at(triangle, b)};
+                         .colour = colour_at(triangle, b),
+                         .middle = part.has_middle ? part.centre : position_of(placed, b)};
     if (!has_second_emission(material)) return point;
     const std::array<glm::vec2, 3> second = mesh.second_uvs(place.triangle);
     point.colour = textured(point.colour, material.base_colour_texture.get(), point.uv);
@@ -305,7 +307,7 @@ void SurfelPlacement::append(SurfelSet& set, const Cell& cell, std::uint32_t poi
         const Patch& of_part = tree_[part.patch];
         const PlacedMesh mesh = surfaces_.mesh(of_part.point.solid);
         if (is_hole(mesh, of_part.point.triangle, of_part.point.weights)) continue;
-        set.points.push_back(cell_point(mesh, of_part.point, of_part.area * cell.scale, index));
+        set.points.push_back(cell_point(mesh, of_part, of_part.area * cell.scale, index));
         set.point_places.push_back(of_part.point);
         area += of_part.area * cell.scale;
     }

@@ -113,9 +113,11 @@ struct ItemTransform {
     glm::mat4 matrix;
     glm::mat3 normal_matrix;
 
-    void apply(glm::vec3& position, glm::vec3& normal) const {
-        position = glm::vec3(matrix * glm::vec4(position, 1.0F));
-        normal = glm::normalize(normal_matrix * normal);
+    [[nodiscard]] glm::vec3 place(const glm::vec3& position) const {
+        return glm::vec3(matrix * glm::vec4(position, 1.0F));
+    }
+    [[nodiscard]] glm::vec3 direction(const glm::vec3& normal) const {
+        return glm::normalize(normal_matrix * normal);
     }
 };
 
@@ -135,9 +137,13 @@ class SurfelMover {
         }
         const ItemTransform& transform = transform_of(item);
         gpu::Surfel& surfel = set.surfels[i];
-        transform.apply(surfel.position, surfel.normal);
+        surfel.position = transform.place(surfel.position);
+        surfel.normal = transform.direction(surfel.normal);
         for (std::uint32_t p = surfel.first_point; p < surfel.first_point + surfel.point_count; ++p) {
-            transform.apply(set.points[p].position, set.points[p].normal);
+            gpu::CellPoint& point = set.points[p];
+            point.position = transform.place(point.position);
+            point.middle = transform.place(point.middle);
+            point.normal = transform.direction(point.normal);
         }
     }
 
@@ -182,10 +188,11 @@ class SurfelMover {
         surfel.area = 0.0F;
         for (std::uint32_t p = surfel.first_point; p < surfel.first_point + surfel.point_count; ++p) {
             const Moved at = moved(set.point_places[p], deformation);
-            set.points[p].position = at.position;
-            set.points[p].normal = at.normal;
-            set.points[p].area *= at.stretch;
-            surfel.area += set.points[p].area;
+            gpu::CellPoint& point = set.points[p];
+            point.position = point.middle = at.position;
+            point.normal = at.normal;
+            point.area *= at.stretch;
+            surfel.area += point.area;
         }
         surfel.width2 *= surfel.area / area_before;
     }
