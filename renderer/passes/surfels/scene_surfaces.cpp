@@ -90,9 +90,10 @@ SceneSurfaces::SceneSurfaces(const SceneLayout& layout, std::vector<glm::mat3> s
 }
 
 std::pair<std::uint32_t, std::uint32_t> SceneSurfaces::solids_of(std::uint32_t item) const {
-    const auto found = std::ranges::equal_range(solids_, item, {}, &Solid::item);
-    return {static_cast<std::uint32_t>(found.begin() - solids_.begin()),
-            static_cast<std::uint32_t>(found.end() - solids_.begin())};
+    const auto first = std::ranges::lower_bound(solids_, item, {}, &Solid::item);
+    const auto end = std::ranges::upper_bound(solids_, item, {}, &Solid::item);
+    return {static_cast<std::uint32_t>(first - solids_.begin()),
+            static_cast<std::uint32_t>(end - solids_.begin())};
 }
 
 PlacedMesh SceneSurfaces::mesh(std::uint32_t solid) const {
