@@ -135,7 +135,7 @@ const std::vector<Layout>& layouts() {
          sizeof(gpu::CellPoint),
          {MEMBER(CellPoint, position), MEMBER(CellPoint, material), MEMBER(CellPoint, normal),
           MEMBER(CellPoint, area), MEMBER(CellPoint, uv), MEMBER(CellPoint, surfel),
-          MEMBER(CellPoint, colour), MEMBER(CellPoint, middle)}},
+          MEMBER(CellPoint, colour), MEMBER(CellPoint, middle), MEMBER(CellPoint, pad0)}},
         {"LitPoint",
          sizeof(gpu::LitPoint),
          {MEMBER(LitPoint, position), MEMBER(LitPoint, area), MEMBER(LitPoint, normal),

@@ -101,13 +101,9 @@ SurfacePoint random_point(const std::vector<Fragment>& fragments, const Sums& su
 
 /// Whether a place is on a fragment, seen along its normal.
 bool is_on(const SceneSurfaces& surfaces, const Fragment& fragment, const glm::dvec3& place) {
-    const Corners corners = corners_of(surfaces.triangle(fragment.solid, fragment.triangle), fragment);
-    const glm::dvec3 ab = corners[1] - corners[0], ac = corners[2] - corners[0], to = place - corners[0];
-    const glm::dvec3 normal = glm::cross(ab, ac);
-    const double size2 = glm::dot(normal, normal);
-    const double u = glm::dot(glm::cross(to, ac), normal) / size2;
-    const double v = glm::dot(glm::cross(ab, to), normal) / size2;
-    return u >= 0.0 && v >= 0.0 && u + v <= 1.0;
+    const Triangle triangle = surfaces.triangle(fragment.solid, fragment.triangle);
+    const glm::dvec2 weights = weights_at(corners_of(triangle, fragment), place);
+    return weights.x >= 0.0 && weights.y >= 0.0 && weights.x + weights.y <= 1.0;
 }
 
 /// Sets the points that stand for a patch.

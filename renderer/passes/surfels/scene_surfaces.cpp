@@ -43,6 +43,13 @@ double area_of(const Corners& corners) {
     return 0.5 * glm::length(glm::cross(corners[1] - corners[0], corners[2] - corners[0]));
 }
 
+glm::dvec2 weights_at(const Corners& triangle, const glm::dvec3& place) {
+    const glm::dvec3 ab = triangle[1] - triangle[0], ac = triangle[2] - triangle[0], to = place - triangle[0];
+    const glm::dvec3 normal = glm::cross(ab, ac);
+    return glm::dvec2(glm::dot(glm::cross(to, ac), normal), glm::dot(glm::cross(ab, to), normal)) /
+           glm::dot(normal, normal);
+}
+
 void SurfaceMoments::add(const Corners& corners, double of_area, const glm::dvec3& facing) {
     for (const glm::dvec3& corner : corners) box.grow(glm::vec3(corner));
     if (!(of_area > 0.0)) return;

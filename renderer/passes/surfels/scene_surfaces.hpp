@@ -49,6 +49,9 @@ using Corners = std::array<glm::dvec3, 3>;
 [[nodiscard]] Corners corners_of(const Triangle& triangle, const Fragment& fragment);
 /// m².
 [[nodiscard]] double area_of(const Corners& corners);
+/// Weights of the corners b and c of the place in the plane of a triangle that is nearest to this one. Not
+/// numbers if the triangle has no area.
+[[nodiscard]] glm::dvec2 weights_at(const Corners& triangle, const glm::dvec3& place);
 
 /// Sums over surfaces, by area, and the box around them.
 struct SurfaceMoments {

@@ -150,6 +150,7 @@ class SurfelMover {
  private:
     /// Where a point of a triangle is now.
     struct Moved {
+        Triangle triangle;  // in world space
         glm::vec3 position;
         glm::vec3 normal;  // unit; 0 if the triangle has no area
         float stretch;     // area of the triangle / that in the mesh
@@ -174,7 +175,8 @@ class SurfelMover {
         const glm::vec3 cross = glm::cross(t.b - t.a, t.c - t.a);
         const float size = glm::length(cross);
         const glm::vec3 front = size > 0.0F ? cross / size : glm::vec3(0.0F);
-        return {.position = position_of(t, point.weights),
+        return {.triangle = t,
+                .position = position_of(t, point.weights),
                 .normal = point.back ? -front : front,
                 .stretch = size / glm::length(glm::cross(in_mesh.b - in_mesh.a, in_mesh.c - in_mesh.a))};
     }
@@ -189,7 +191,12 @@ class SurfelMover {
         for (std::uint32_t p = surfel.first_point; p < surfel.first_point + surfel.point_count; ++p) {
             const Moved at = moved(set.point_places[p], deformation);
             gpu::CellPoint& point = set.points[p];
-            point.position = point.middle = at.position;
+            // The middle moves with the plane of the triangle.
+            const SurfacePoint& place = set.point_places[p];
+            const Triangle before = spread_.placement->surfaces().triangle(place.solid, place.triangle);
+            const glm::dvec2 weights = weights_at(corners_of(before, {}), glm::dvec3(point.middle));
+            point.middle = position_of(at.triangle, glm::vec2(weights));
+            point.position = at.position;
             point.normal = at.normal;
             point.area *= at.stretch;
             surfel.area += point.area;
