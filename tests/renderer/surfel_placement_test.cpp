@@ -416,7 +416,7 @@ TEST_CASE("cells of a larger object are as much larger, whatever its mesh") {
     CHECK(total_area(large) == doctest::Approx(total_area(one) * std::pow(static_cast<double>(size), 2.0)));
 }
 
-TEST_CASE("moments of surfaces are those of their fragments, for shapes of any kind") {
+TEST_CASE("moments of surfaces are those of their triangles, for shapes of any kind") {
     const glm::mat3 stretched(2.0F, 0.0F, 0.0F, 0.5F, 1.5F, 0.0F, 0.0F, 0.3F, 0.7F);
     glm::mat3 mirrored(1.7F);
     mirrored[0] = -mirrored[0];
@@ -428,13 +428,11 @@ TEST_CASE("moments of surfaces are those of their fragments, for shapes of any k
             // The second one shares what was summed up for the first, of another size.
             SceneSurfaces surfaces(layout, {2.5F * shape, shape});
             CHECK(surfaces.moments(0).area > 6.0 * surfaces.moments(1).area);
-            std::vector<Fragment> fragments;
-            surfaces.append_fragments(fragments, 1);
             SurfaceMoments direct;
-            for (const Fragment& fragment : fragments) {
-                const Triangle triangle = surfaces.triangle(1, fragment.triangle);
-                const Corners corners = corners_of(triangle, fragment);
-                direct.add(corners, area_of(corners), normal_of(triangle, fragment.back));
+            for (const Triangle& triangle : surfaces.mesh(1).triangles()) {
+                const Corners corners = corners_of(triangle);
+                direct.add(corners, area_of(corners), normal_of(triangle, false));
+                if (double_sided) direct.add(corners, area_of(corners), normal_of(triangle, true));
             }
             const SurfaceMoments summed = surfaces.moments(1);
             // Positions are rounded to 6e-8 of the size of what they are of.

@@ -202,8 +202,11 @@ struct DrawRange {
 /// earlier frame. Makes them those that are drawn next, and returns their ranges, by view.
 std::vector<DrawRange> upload_draws(const Gpu& gpu, Execution& run, const ShadowNode& node) {
     const ShadowPlan& plan = run.value(node.out.plan);
-    const std::vector<ShadowCaster> casters = shadow_casters(
-        run.value(node.scene.layout), run.value(node.scene.placement), run.value(node.metrics).ray_offset());
+    std::vector<ShadowCaster> casters;
+    if (!plan.views.empty()) {
+        casters = shadow_casters(run.value(node.scene.layout), run.value(node.scene.placement),
+                                 run.value(node.metrics).ray_offset());
+    }
     std::vector<gpu::DrawCommand> draws;
     std::vector<DrawRange> ranges;
     ranges.reserve(plan.views.size());
@@ -221,7 +224,6 @@ void draw_views(Gpu& gpu, Execution& run, const ShadowNode& node, const std::vec
     const auto& out = node.out;
     const ShadowPlan& plan = run.value(out.plan);
     run.set(out.drawn, {plan.views, static_cast<std::uint32_t>(due.size())});
-    if (plan.views.empty()) return;
 
     // Rays end nearer to the light.
     const float least_distance = 0.5F * run.value(node.metrics).ray_offset();

@@ -60,7 +60,8 @@ struct ShadowMaps {
     BufferHandle<gpu::DrawCommand> draws;  ///< of all views
 };
 
-/// Assigns shadow maps to the lights that cast shadows, by decreasing flux, as long as the budget lasts.
+/// Assigns shadow maps to the lights that cast shadows, by decreasing flux, as long as the budget lasts. A
+/// directional light has none in a world of more than 2²⁴ triangles.
 /// Which lights have one does not depend on `scale`; see shadow_resolution.
 [[nodiscard]] ShadowPlan plan_shadows(const LightTable& lights, const SceneMetrics& metrics,
                                       const ShadowSettings& settings, float scale);

@@ -4,6 +4,7 @@
 #include <cmath>
 #include <glm/common.hpp>
 #include <glm/geometric.hpp>
+#include <span>
 #include <utility>
 
 namespace candela {
@@ -65,12 +66,23 @@ void describe(Patch& patch, const SurfaceMoments& moments) {
         patch.middle + static_cast<float>(off * std::sqrt((patch.cuts_normals ? bend : spread)[patch.axis]));
 }
 
+/// The triangles of a tree.
+using Triangles = std::span<const TreeTriangle>;
+
+Corners corners_of(Triangles triangles, const Fragment& fragment) {
+    const Triangle& placed = triangles[fragment.triangle].placed;
+    Corners corners;
+    for (std::size_t i = 0; i < 3; ++i) corners[i] = position_of(placed, fragment.corners[i]);
+    return corners;
+}
+
 /// A random point of a fragment, evenly by area.
-SurfacePoint point_in(const Fragment& fragment, std::uint64_t id) {
+SurfacePoint point_in(Triangles triangles, const Fragment& fragment, std::uint64_t id) {
     glm::vec2 at(random_of(id, use_x), random_of(id, use_y));
     if (at.x + at.y > 1.0F) at = 1.0F - at;
     const auto& corners = fragment.corners;
-    return {fragment.solid, fragment.triangle,
+    const TreeTriangle& triangle = triangles[fragment.triangle];
+    return {triangle.solid, triangle.number,
             corners[0] + at.x * (corners[1] - corners[0]) + at.y * (corners[2] - corners[0]), fragment.back};
 }
 
@@ -80,40 +92,39 @@ struct Sums {
     std::vector<double> area_up_to;  // the area of those up to each one, and of that one
 };
 
-Sums sum_up(const SceneSurfaces& surfaces, const std::vector<Fragment>& fragments) {
+Sums sum_up(Triangles triangles, const std::vector<Fragment>& fragments) {
     Sums sums;
     sums.area_up_to.reserve(fragments.size());
     for (const Fragment& fragment : fragments) {
-        const Triangle triangle = surfaces.triangle(fragment.solid, fragment.triangle);
-        const Corners corners = corners_of(triangle, fragment);
-        sums.moments.add(corners, area_of(corners), normal_of(triangle, fragment.back));
+        const Corners corners = corners_of(triangles, fragment);
+        const glm::vec3 normal = normal_of(triangles[fragment.triangle].placed, fragment.back);
+        sums.moments.add(corners, area_of(corners), normal);
         sums.area_up_to.push_back(sums.moments.area);
     }
     return sums;
 }
 
 /// A random point of fragments, evenly by area.
-SurfacePoint random_point(const std::vector<Fragment>& fragments, const Sums& sums, std::uint64_t id) {
+SurfacePoint random_point(Triangles triangles, const std::vector<Fragment>& fragments, const Sums& sums,
+                          std::uint64_t id) {
     const auto chosen =
         std::ranges::upper_bound(sums.area_up_to, random_of(id, use_fragment) * sums.moments.area);
-    return point_in(fragments[static_cast<std::size_t>(chosen - sums.area_up_to.begin())], id);
+    return point_in(triangles, fragments[static_cast<std::size_t>(chosen - sums.area_up_to.begin())], id);
 }
 
 /// Whether a place is on a fragment, seen along its normal.
-bool is_on(const SceneSurfaces& surfaces, const Fragment& fragment, const glm::dvec3& place) {
-    const Triangle triangle = surfaces.triangle(fragment.solid, fragment.triangle);
-    const glm::dvec2 weights = weights_at(corners_of(triangle, fragment), place);
+bool is_on(Triangles triangles, const Fragment& fragment, const glm::dvec3& place) {
+    const glm::dvec2 weights = weights_at(corners_of(triangles, fragment), place);
     return weights.x >= 0.0 && weights.y >= 0.0 && weights.x + weights.y <= 1.0;
 }
 
-/// Sets the points that stand for a patch.
-void set_points(Patch& patch, const SceneSurfaces& surfaces, const std::vector<Fragment>& fragments,
-                const Sums& sums) {
-    patch.point = random_point(fragments, sums, patch.id);
-    const glm::dvec3 centre(patch.centre);
-    patch.has_middle = patch.bend < least_bend && std::ranges::any_of(fragments, [&](const Fragment& part) {
-                           return is_on(surfaces, part, centre);
-                       });
+/// Sets the points that represent a patch.
+void set_points(Patch& patch, Triangles triangles, const std::vector<Fragment>& fragments, const Sums& sums) {
+    patch.point = random_point(triangles, fragments, sums, patch.id);
+    const auto has_centre = [&, centre = glm::dvec3(patch.centre)](const Fragment& fragment) {
+        return is_on(triangles, fragment, centre);
+    };
+    patch.has_middle = patch.bend < least_bend && std::ranges::any_of(fragments, has_centre);
 }
 
 /// The two sides of a cut.
@@ -135,7 +146,7 @@ void cut_fragment(const Fragment& fragment, const std::array<float, 3>& distance
     const glm::vec2 to_next = meet(next), to_last = meet(last);
     const std::size_t side = distances[alone] < 0.0F ? 0 : 1;
     const auto add = [&](std::size_t half, glm::vec2 a, glm::vec2 b, glm::vec2 c) {
-        halves[half].push_back({fragment.solid, fragment.triangle, fragment.back, {a, b, c}});
+        halves[half].push_back({fragment.triangle, fragment.back, {a, b, c}});
     };
     add(side, fragment.corners[alone], to_next, to_last);
     add(1 - side, to_next, fragment.corners[next], fragment.corners[last]);
@@ -158,10 +169,10 @@ void divide_by_position(const Triangle& triangle, const Fragment& fragment, cons
     halves[distances[0] + distances[1] + distances[2] < 0.0F ? 0 : 1].push_back(fragment);
 }
 
-Halves divide(const SceneSurfaces& surfaces, const std::vector<Fragment>& fragments, const Patch& patch) {
+Halves divide(Triangles triangles, const std::vector<Fragment>& fragments, const Patch& patch) {
     Halves halves;
     for (const Fragment& fragment : fragments) {
-        const Triangle triangle = surfaces.triangle(fragment.solid, fragment.triangle);
+        const Triangle& triangle = triangles[fragment.triangle].placed;
         if (patch.cuts_normals) {
             const float along = normal_of(triangle, fragment.back)[patch.axis];
             halves[along < patch.at ? 0 : 1].push_back(fragment);
@@ -207,10 +218,10 @@ std::optional<std::uint32_t> PatchTree::add_root(std::uint32_t item, bool emits,
 
 /// `patch` is told its id and its surfaces. Returns whether it has an area.
 bool PatchTree::add_half(std::vector<Fragment> fragments, Patch patch) {
-    const Sums sums = sum_up(*surfaces_, fragments);
+    const Sums sums = sum_up(triangles_, fragments);
     if (!(sums.moments.area > 0.0)) return false;
     describe(patch, sums.moments);
-    set_points(patch, *surfaces_, fragments, sums);
+    set_points(patch, triangles_, fragments, sums);
     patches_.push_back(patch);
     fragments_.push_back(std::move(fragments));
     return true;
@@ -223,7 +234,7 @@ bool PatchTree::cut(std::uint32_t patch) {
     if (try_cut(patch)) return true;
     Patch& whole = patches_[patch];
     whole.is_whole = true;
-    set_points(whole, *surfaces_, fragments_[patch], sum_up(*surfaces_, fragments_[patch]));
+    set_points(whole, triangles_, fragments_[patch], sum_up(triangles_, fragments_[patch]));
     return false;
 }
 
@@ -235,13 +246,28 @@ std::uint32_t PatchTree::half_of(std::uint32_t patch, const SurfacePoint& point)
     return place[cut.axis] < cut.at ? 0 : 1;
 }
 
+/// All sides that reflect light, or emit it: fronts, and the backs of double-sided ones. Adds their
+/// triangles.
+std::vector<Fragment> PatchTree::fragments_of_root(const Patch& root) {
+    std::vector<Fragment> fragments;
+    visit_solids(root, [&](std::uint32_t solid) {
+        const PlacedMesh mesh = surfaces_->mesh(solid);
+        const bool double_sided = surfaces_->solids()[solid].material().double_sided;
+        for (std::uint32_t i = 0; i < mesh.count(); ++i) {
+            const auto index = static_cast<std::uint32_t>(triangles_.size());
+            triangles_.push_back({mesh.triangle(i), solid, i});
+            fragments.push_back({.triangle = index});
+            if (double_sided) fragments.push_back({.triangle = index, .back = true});
+        }
+    });
+    return fragments;
+}
+
 bool PatchTree::try_cut(std::uint32_t patch) {
     const Patch whole = patches_[patch];
     std::vector<Fragment>& fragments = fragments_[patch];
-    if (fragments.empty()) {
-        visit_solids(whole, [&](std::uint32_t solid) { surfaces_->append_fragments(fragments, solid); });
-    }
-    Halves halves = divide(*surfaces_, fragments, whole);
+    if (fragments.empty()) fragments = fragments_of_root(whole);
+    Halves halves = divide(triangles_, fragments, whole);
     if (halves[0].empty() || halves[1].empty()) return false;
     const auto first = static_cast<std::uint32_t>(patches_.size());
     const auto half = [&](std::uint64_t use) {

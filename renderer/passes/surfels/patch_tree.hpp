@@ -1,14 +1,32 @@
 #pragma once
 
+#include <array>
 #include <cstdint>
+#include <glm/vec2.hpp>
 #include <glm/vec3.hpp>
 #include <optional>
 #include <vector>
 
 #include "engine/bvh/box.hpp"
+#include "engine/bvh/bvh.hpp"
 #include "renderer/passes/surfels/scene_surfaces.hpp"
 
 namespace candela {
+
+/// A part of a triangle, on one of its sides.
+struct Fragment {
+    std::uint32_t triangle = 0;  ///< index into the tree's
+    bool back = false;
+    /// Weights of b and c of the triangle at the corners of the part.
+    std::array<glm::vec2, 3> corners{glm::vec2(0.0F, 0.0F), glm::vec2(1.0F, 0.0F), glm::vec2(0.0F, 1.0F)};
+};
+
+/// A triangle of a root that has been cut.
+struct TreeTriangle {
+    Triangle placed;           ///< in the space of the item's shape
+    std::uint32_t solid = 0;   ///< as in SurfacePoint
+    std::uint32_t number = 0;  ///< SurfacePoint::triangle
+};
 
 /// A part of surfaces. Its values depend on its root and on the cuts down to it, and on nothing else in the
 /// tree.
@@ -65,10 +83,12 @@ class PatchTree {
  private:
     bool add_half(std::vector<Fragment> fragments, Patch patch);
     bool try_cut(std::uint32_t patch);
+    [[nodiscard]] std::vector<Fragment> fragments_of_root(const Patch& root);
     template <class Visit>
     void visit_solids(const Patch& root, Visit visit) const;
 
     SceneSurfaces* surfaces_;
+    std::vector<TreeTriangle> triangles_;
     std::vector<Patch> patches_;
     std::vector<std::vector<Fragment>> fragments_;  // by patch; none of those that are cut, and of new roots
 };

@@ -14,7 +14,7 @@ SurfaceMoments moments_of(const PlacedMesh& mesh) {
     SurfaceMoments moments;
     for (std::uint32_t i = 0; i < mesh.count(); ++i) {
         const Triangle triangle = mesh.triangle(i);
-        const Corners corners = corners_of(triangle, {});
+        const Corners corners = corners_of(triangle);
         moments.add(corners, area_of(corners), normal_of(triangle, false));
     }
     return moments;
@@ -31,12 +31,6 @@ std::array<float, 9> numbers_of(const glm::mat3& matrix) {
 glm::vec3 normal_of(const Triangle& triangle, bool back) {
     const glm::vec3 front = glm::normalize(glm::cross(triangle.b - triangle.a, triangle.c - triangle.a));
     return back ? -front : front;
-}
-
-Corners corners_of(const Triangle& triangle, const Fragment& fragment) {
-    Corners corners;
-    for (std::size_t i = 0; i < 3; ++i) corners[i] = position_of(triangle, fragment.corners[i]);
-    return corners;
 }
 
 double area_of(const Corners& corners) {
@@ -124,16 +118,6 @@ SurfaceMoments SceneSurfaces::moments(std::uint32_t solid) {
     SurfaceMoments moments = found->second.scaled(size);
     if (solids_[solid].material().double_sided) moments.add(moments.turned());
     return moments;
-}
-
-void SceneSurfaces::append_fragments(std::vector<Fragment>& fragments, std::uint32_t solid) const {
-    const std::uint32_t count = mesh(solid).count();
-    const bool double_sided = solids_[solid].material().double_sided;
-    fragments.reserve(fragments.size() + (double_sided ? 2 : 1) * std::size_t{count});
-    for (std::uint32_t i = 0; i < count; ++i) {
-        fragments.push_back({.solid = solid, .triangle = i});
-        if (double_sided) fragments.push_back({.solid = solid, .triangle = i, .back = true});
-    }
 }
 
 }  // namespace candela

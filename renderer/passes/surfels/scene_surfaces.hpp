@@ -29,24 +29,17 @@ struct SurfacePoint {
     bool operator==(const SurfacePoint&) const = default;
 };
 
-/// A part of a triangle, on one of its sides.
-struct Fragment {
-    std::uint32_t solid = 0;     ///< index into SceneSurfaces::solids
-    std::uint32_t triangle = 0;  ///< of the solid
-    bool back = false;
-    /// Weights of b and c of the triangle at the corners of the part.
-    std::array<glm::vec2, 3> corners{glm::vec2(0.0F, 0.0F), glm::vec2(1.0F, 0.0F), glm::vec2(0.0F, 1.0F)};
-};
-
 /// Unit normal of a side of a triangle.
 [[nodiscard]] glm::vec3 normal_of(const Triangle& triangle, bool back);
 [[nodiscard]] inline glm::vec3 position_of(const Triangle& triangle, glm::vec2 weights) {
     return triangle.a + weights.x * (triangle.b - triangle.a) + weights.y * (triangle.c - triangle.a);
 }
 
-/// The corners of a fragment of a triangle.
+/// The corners of a triangle, or of a part of one.
 using Corners = std::array<glm::dvec3, 3>;
-[[nodiscard]] Corners corners_of(const Triangle& triangle, const Fragment& fragment);
+[[nodiscard]] inline Corners corners_of(const Triangle& triangle) {
+    return {triangle.a, triangle.b, triangle.c};
+}
 /// m².
 [[nodiscard]] double area_of(const Corners& corners);
 /// Weights of the corners b and c of the place in the plane of a triangle that is nearest to this one. Not
@@ -96,11 +89,9 @@ class SceneSurfaces {
     [[nodiscard]] Triangle triangle(std::uint32_t solid, std::uint32_t i) const {
         return mesh(solid).triangle(i);
     }
-    /// Of all sides that reflect light, or emit it: fronts, and the backs of double-sided ones. They are
-    /// summed up once for all solids of a primitive whose shapes differ in size alone.
+    /// Of its fronts, and of its backs if it is double-sided. They are summed up once for all solids of a
+    /// primitive whose shapes differ in size alone.
     [[nodiscard]] SurfaceMoments moments(std::uint32_t solid);
-    /// The same sides.
-    void append_fragments(std::vector<Fragment>& fragments, std::uint32_t solid) const;
 
  private:
     /// A primitive, the numbers of a shape matrix, and whether that reverses the winding.

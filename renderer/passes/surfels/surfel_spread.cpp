@@ -189,13 +189,13 @@ class SurfelMover {
         const float area_before = surfel.area;
         surfel.area = 0.0F;
         for (std::uint32_t p = surfel.first_point; p < surfel.first_point + surfel.point_count; ++p) {
-            const Moved at = moved(set.point_places[p], deformation);
+            const SurfacePoint& place = set.point_places[p];
+            const Moved at = moved(place, deformation);
             gpu::CellPoint& point = set.points[p];
             // The middle moves with the plane of the triangle.
-            const SurfacePoint& place = set.point_places[p];
             const Triangle before = spread_.placement->surfaces().triangle(place.solid, place.triangle);
-            const glm::dvec2 weights = weights_at(corners_of(before, {}), glm::dvec3(point.middle));
-            point.middle = position_of(at.triangle, glm::vec2(weights));
+            const glm::vec2 weights(weights_at(corners_of(before), glm::dvec3(point.middle)));
+            point.middle = position_of(at.triangle, weights);
             point.position = at.position;
             point.normal = at.normal;
             point.area *= at.stretch;
