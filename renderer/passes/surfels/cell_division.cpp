@@ -139,19 +139,20 @@ CellDivision divide_cell(const SurfelSet& set, std::size_t surfel, const TracedS
     }
     const LayerLimits limits = layer_limits(ray_offset);
     const auto is_hidden = [&](const glm::vec3& position, const glm::vec3& normal,
-                               const SurfacePoint& place) {
-        return !order.empty() &&
-               is_covered(scene, order, {position, normal, place.solid, place.triangle}, limits);
+                               const std::vector<SurfacePoint>& places, std::size_t i) {
+        // Branches, which are divided without an order, have no places on triangles.
+        if (order.empty()) return false;
+        return is_covered(scene, order, {position, normal, places[i].solid, places[i].triangle}, limits);
     };
     const bool is_whole = surfel >= set.surfels.size() - set.emitting_count && !divides_emitters(set);
     CellDivision division;
     for (std::size_t i = 0; i < points.size(); ++i) {
         const bool hidden =
-            is_hidden(points[i].position, points[i].normal, set.point_places[own.first_point + i]);
+            is_hidden(points[i].position, points[i].normal, set.point_places, own.first_point + i);
         division.part_of.push_back(hidden ? covered_part : most_cell_parts);
     }
     Seat from = seat_of(own.position, own.normal, lift, scene, ray_offset);
-    const bool own_hidden = is_hidden(own.position, own.normal, set.surfel_places[surfel]);
+    const bool own_hidden = is_hidden(own.position, own.normal, set.surfel_places, surfel);
     for (std::uint8_t part = own_hidden ? 1 : 0; part < most_cell_parts; ++part) {
         if (part > 0) {
             const auto middle = middle_of_rest(points, division);
