@@ -40,7 +40,6 @@
 #define BINDING_LISTED_SURFELS BINDING_FLUX
 #define BINDING_SURFEL_TASKS BINDING_LIST_ENTRIES
 #define BINDING_MAP_TASKS BINDING_SHADOWS
-#define BINDING_SURFEL_GROUPS BINDING_SHADOWS
 #define BINDING_SEEN_SURFELS BINDING_SHADOWS
 #define BINDING_GUIDE BINDING_LIST_ENTRIES
 #define BINDING_KEPT_POINTS BINDING_LIST_FIRST
@@ -166,8 +165,4 @@
 #define COVER_DIRECTIONS 64   // in which pixels find the share of their hemisphere that surfaces cover: vpl_light.glsl
 #define MOST_SKY_SUNS 4
 #define MOST_SKY_PATCHES 256  // in the uniform block of sky_patch.glsl
-// Distances of a pixel from a group of surfels, in widths of the group: nearer, the surfels are summed one by one; farther,
-// the group as one; between them, both in part. See README.md, "Groups of surfels".
-#define GROUP_NEAR 2.5
-#define GROUP_FAR 3.0
 #define MOST_COLUMNS 2048   // largest number of surfels that one surfel gathers from

@@ -183,7 +183,7 @@ struct Surfel {
 #define SURFEL_MAP_FOCUS_SHIFT 29u
 #define SURFEL_MAP_FOCI 4
 
-// A surfel with the light that its cell reflects, as a VPL. Also a group of surfels, whose points are its surfels.
+// A surfel with the light that its cell reflects, as a VPL.
 struct LitSurfel {
     vec3 position;     // metres, of the surfel; its depth map is seen from ray_offset above it
     uint first_point;  // index of its cell's first LitPoint
@@ -195,20 +195,8 @@ struct LitSurfel {
     float area;        // m², of its cell
     float width2;      // m², squared width of its cell: the area of a square one
     uint map;          // Surfel::map
-    float reach DEFAULT(0.0F);      // SurfelGroup::reach
-    float thickness DEFAULT(0.0F);  // SurfelGroup::thickness
-};
-
-// Surfels that pixels far away see as one VPL: surfel_groups.comp. Its record is a LitSurfel.
-struct SurfelGroup {
-    uint first;    // index of its first surfel
-    uint count;    // of its surfels
-    uint middle;   // index of the surfel whose position, normal and depth map it has
-    float width2;  // m², squared width: the area of a square one
-    float reach;      // metres: its points are at most so far from the middle surfel,
-    float thickness;  // and so far from that one's plane
-    uint pad0 DEFAULT(0u);
-    uint pad1 DEFAULT(0u);
+    float pad0 DEFAULT(0.0F);
+    float pad1 DEFAULT(0.0F);
 };
 
 // A surfel on a surface that emits light, with that light and what its cell reflects, as a VPL.
@@ -284,7 +272,7 @@ struct CellLight {
 
 // Constants that all VPLs share. A uniform block: shaders/vpls/vpl_constants.glsl.
 struct VplConstants {
-    uint count;               // of all kinds, groups of surfels instead of surfels where there are any
+    uint count;               // of all kinds
     uint first_emitter;       // index of the first surfel on a surface that emits light
     uint first_sky_patch;     // index of the first patch of the sky
     float ray_offset;         // metres above a surface, where rays and depth maps start
@@ -293,7 +281,7 @@ struct VplConstants {
     float map_side;           // texels along a side of a layer
     float map_near;           // metres, the octahedral distance at which map depth is 1
     vec4 foci[4];             // SURFEL_MAP_FOCI spheres, of which a far surfel's map shows one: centre and radius, metres
-    uint mapped;              // VPLs with depth maps; the records of groups of surfels follow theirs
+    uint mapped;              // VPLs with depth maps
     uint first_direction;     // index of the first direction of light that is the same everywhere
     uint mean_record;         // index of the LitSurfel that has this light: surfel_mean.comp
     uint pad0 DEFAULT(0u);

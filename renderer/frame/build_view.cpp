@@ -383,10 +383,11 @@ void build_view(FrameGraph& graph, Gpu& gpu, const SharedFrame& shared, const Vi
         out.interleave = std::max(interleaving(configuration.interleave, shared.vpls->count, shape.target),
                                   shared.quality.interleave);
     }
-    // VPLs are also gathered without interleaving if they are too many for one loop of the shading pass.
+    // VPLs are also gathered without interleaving if they may be too many for one loop of the shading pass:
+    // cells that walls cut have several surfels, so that there may be more than were asked for.
     const bool gathers =
         shared.vpls && (out.interleave > 1 || asked.indirect ||
-                        shared.vpls->count > vpls_a_loop(gpu.device().limits(), shared.vpls->light));
+                        2 * shared.vpls->count > vpls_a_loop(gpu.device().limits(), shared.vpls->light));
     const bool estimates = shape.estimate_error && shared.vpls && shared.vpls->other;
     asked.depth |= gathers || estimates;
     const bool mirrors = shows_mirrors(shared, out);

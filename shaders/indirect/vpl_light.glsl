@@ -122,62 +122,14 @@ vec3 irradiance_from_surfel(LitSurfel surfel, VplPose pose, Surface surface) {
     return unoccluded * visibility_of_vpl(surfel.map, pose, surface);
 }
 
-// Adds that light, times `share` by surface. Loops over the surfaces inside, so that the frame of its map is made once.
-void add_surfel(LitSurfel surfel, float share[SURFACES], Surface surfaces[SURFACES], inout Gathered gathered[SURFACES]) {
+// Adds that light. Loops over the surfaces inside, so that the frame of its map is made once.
+void add_surfel(LitSurfel surfel, Surface surfaces[SURFACES], inout Gathered gathered[SURFACES]) {
     VplPose pose = vpl_pose(surfel.position, surfel.normal, surfel.map);
     for (int s = 0; s < SURFACES; ++s) {
-        if (share[s] <= 0.0) continue;
-        vec3 irradiance = share[s] * irradiance_from_surfel(surfel, pose, surfaces[s]);
+        vec3 irradiance = irradiance_from_surfel(surfel, pose, surfaces[s]);
         add_gathered(gathered[s], irradiance, surfel.centre - surfaces[s].position, surfaces[s]);
     }
 }
-
-#ifdef GROUPS
-
-// How much of the light of a group a surface receives from it as a whole, rather than from its surfels one by one.
-float share_of_whole(LitSurfel group, Surface surface) {
-    float widths = distance(group.position, surface.position) * inversesqrt(max(group.width2, 1e-20));
-    return group.point_count == 1u ? 0.0 : smoothstep(GROUP_NEAR, GROUP_FAR, widths);
-}
-
-// Whether all of a group is behind a surface, or in its plane. Light from surfels that rounding puts a ray offset above
-// it is lost.
-bool is_behind(LitSurfel group, Surface surface) {
-    vec3 normal = face_normal(surface);
-    float above = dot(normal, group.position - surface.position) + group.reach * length(cross(normal, group.normal)) +
-                  group.thickness;
-    return above <= vpl_constants.ray_offset;
-}
-
-// π times the irradiance from a group as a whole.
-vec3 irradiance_from_whole(LitSurfel group, VplPose pose, Surface surface) {
-    vec3 unoccluded = group.flux * disc_term_at(surface, group.centre, group.normal, group.radius2);
-    if (unoccluded == vec3(0.0)) return vec3(0.0);
-    return unoccluded * visibility_of_vpl(group.map, pose, surface);
-}
-
-// Adds π times the irradiance from a group of surfels: to surfaces far from it from all as one, to near ones from each.
-void add_group(LitSurfel group, Surface surfaces[SURFACES], inout Gathered gathered[SURFACES]) {
-    if (group.flux == vec3(0.0)) return;
-    VplPose pose = vpl_pose(group.position, group.normal, group.map);
-    float of_each[SURFACES];
-    float most = 0.0;
-    for (int s = 0; s < SURFACES; ++s) {
-        float of_whole = share_of_whole(group, surfaces[s]);
-        if (of_whole > 0.0) {
-            vec3 irradiance = of_whole * irradiance_from_whole(group, pose, surfaces[s]);
-            add_gathered(gathered[s], irradiance, group.centre - surfaces[s].position, surfaces[s]);
-        }
-        of_each[s] = of_whole < 1.0 && is_behind(group, surfaces[s]) ? 0.0 : 1.0 - of_whole;
-        most = max(most, of_each[s]);
-    }
-    if (most == 0.0) return;
-    for (uint i = 0u; i < group.point_count; ++i) {
-        add_surfel(lit_surfel_at(group.first_point + i), of_each, surfaces, gathered);
-    }
-}
-
-#endif
 
 #ifdef EMITTERS
 
@@ -241,18 +193,11 @@ void add_direction(inout Gathered gathered, uint direction, Surface surface) {
 
 #endif
 
-// Adds π times the irradiance from the VPL of that index, or with GROUPS from a group of surfels: the kinds follow one
-// another. Kinds whose light is not shown send none. Loops over the surfaces inside, so that the VPL is fetched, and the
+// Adds π times the irradiance from the VPL of that index: the kinds follow one another. Kinds whose light is not shown send none. Loops over the surfaces inside, so that the VPL is fetched, and the
 // frame of its map made, once.
 void add_vpl(uint index, Surface surfaces[SURFACES], inout Gathered gathered[SURFACES]) {
     if (index < vpl_constants.first_emitter) {
-#ifdef GROUPS
-        add_group(lit_surfel_at(vpl_constants.mapped + index), surfaces, gathered);
-#else
-        float whole[SURFACES];
-        for (int s = 0; s < SURFACES; ++s) whole[s] = 1.0;
-        add_surfel(lit_surfel_at(index), whole, surfaces, gathered);
-#endif
+        add_surfel(lit_surfel_at(index), surfaces, gathered);
         return;
     }
 #ifdef BALANCED

@@ -1,5 +1,5 @@
 // Mean radiosity of the items that have no surfels of their own, as those show it that stand for them. It is written as
-// the flux of a record behind those of surfels and groups. See README.md, "Shared items". One work group in all; an
+// the flux of a record behind those of surfels. See README.md, "Shared items". One work group in all; an
 // invocation adds up every SURFEL_GROUP-th cell.
 #include "surfels/surfel.glsl"
 

@@ -93,7 +93,6 @@ void add_cell(SurfelSet& set, const std::vector<glm::vec3>& positions,
                            .width2 = 1.0F});
     set.ids.push_back(set.surfels.size());
     set.patches.push_back(set.surfels.size());
-    set.branches.push_back(static_cast<std::uint32_t>(set.surfels.size()));
     set.surfel_places.push_back(set.point_places[first]);
     set.item_of.push_back(static_cast<std::uint32_t>(set.surfels.size() % 3));
 }

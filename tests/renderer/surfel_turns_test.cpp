@@ -65,9 +65,6 @@ TEST_CASE_FIXTURE(SurfelTurns, "pictures are those of sets that are made at once
     SUBCASE("rays") {
         configuration.visibility.method = VplVisibility::rays;
     }
-    SUBCASE("groups of surfels") {
-        configuration.vpls.count = 1024;
-    }
     configure_both(configuration);
     for (std::uint32_t frame = 0; frame < 3 * frames_a_surfel_set + 2; ++frame) {
         CAPTURE(frame);

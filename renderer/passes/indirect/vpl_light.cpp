@@ -5,33 +5,16 @@
 #include <limits>
 
 #include "renderer/gpu/loop_parts.hpp"
-#include "renderer/passes/surfels/surfel_placement.hpp"
 
 namespace candela {
 
 namespace {
 
-/// About how many surfels each of a pixel's sources of light has; 1: it sums VPLs one by one.
-std::uint32_t group_size_of(const VplLight& light) {
-    const auto* const lit = std::get_if<LitSurfels>(&light.vpls.records);
-    return lit != nullptr ? lit->group_size : 1;
-}
-
-std::uint32_t iterations_of_single(const VplLight& light) {
+std::uint32_t iterations_if_few_have_rays(const VplLight& light) {
     if (light.rays) {
         return light.maps ? iterations_a_ray / 16 : iterations_a_ray / 2;  // few need rays
     }
     return std::holds_alternative<LitSurfels>(light.vpls.records) ? 31 : 7;
-}
-
-std::uint32_t iterations_if_few_have_rays(const VplLight& light) {
-    const std::uint32_t size = group_size_of(light);
-    const std::uint32_t single = iterations_of_single(light);
-    if (size == 1) return single;
-    // Of all groups, less than a quarter are so near that their surfels are summed one by one, and of all
-    // surfels less than a quarter so near that each of their points is.
-    if (light.rays && !light.maps) return (1 + size / 4) * single;
-    return std::max((1 + size + size * points_a_surfel / 4) * 13 / 8, single);
 }
 
 }  // namespace
@@ -39,7 +22,7 @@ std::uint32_t iterations_if_few_have_rays(const VplLight& light) {
 std::uint32_t iterations_a_vpl(const VplLight& light, const VplCounts& counts) {
     const std::uint32_t few = iterations_if_few_have_rays(light);
     if (!light.rays || counts.sources() == 0) return few;
-    const std::uint64_t with_rays = counts.sources() - counts.mapped_sources();
+    const std::uint64_t with_rays = counts.sources() - counts.mapped();
     return std::max(few, static_cast<std::uint32_t>(iterations_a_ray / 2 * with_rays / counts.sources()));
 }
 
@@ -55,7 +38,6 @@ std::vector<std::string> vpl_light_variant(const VplLight& light) {
         words.emplace_back("SURFELS");
         if (lit->emitters) words.emplace_back("EMITTERS");
         if (lit->sky) words.emplace_back("SKY");
-        if (lit->group_size > 1) words.emplace_back("GROUPS");
         if (lit->balanced) words.emplace_back("BALANCED");
     }
     if (light.maps) words.emplace_back("VPL_VISIBILITY_MAPS");

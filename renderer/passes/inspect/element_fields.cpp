@@ -79,7 +79,6 @@ const std::map<std::type_index, std::string_view>& glsl_names() {
         {typeid(gpu::Shadow), "Shadow"},
         {typeid(gpu::SkyPatch), "SkyPatch"},
         {typeid(gpu::Surfel), "Surfel"},
-        {typeid(gpu::SurfelGroup), "SurfelGroup"},
         {typeid(gpu::TileDepth), "TileDepth"},
         {typeid(gpu::TraceTriangle), "TraceTriangle"},
         {typeid(gpu::TracedVpl), "TracedVpl"},

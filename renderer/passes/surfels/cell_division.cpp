@@ -122,7 +122,6 @@ void append_part(SurfelSet& to, const SurfelSet& set, std::size_t cell, const Ce
     to.patches.push_back(combine_ids(set.patches[cell], part));
     to.surfel_places.push_back(place);
     to.item_of.push_back(set.item_of[cell]);
-    to.branches.push_back(set.branches[cell]);
 }
 
 }  // namespace
@@ -140,9 +139,9 @@ CellDivision divide_cell(const SurfelSet& set, std::size_t surfel, const TracedS
     const LayerLimits limits = layer_limits(ray_offset);
     const auto is_hidden = [&](const glm::vec3& position, const glm::vec3& normal,
                                const std::vector<SurfacePoint>& places, std::size_t i) {
-        // Branches, which are divided without an order, have no places on triangles.
-        if (order.empty()) return false;
-        return is_covered(scene, order, {position, normal, places[i].solid, places[i].triangle}, limits);
+        const SurfacePoint& place = places[i];
+        return !order.empty() &&
+               is_covered(scene, order, {position, normal, place.solid, place.triangle}, limits);
     };
     const bool is_whole = surfel >= set.surfels.size() - set.emitting_count && !divides_emitters(set);
     CellDivision division;

@@ -21,14 +21,14 @@ std::uint64_t hash_words(std::uint64_t seed, std::span<const std::uint64_t> word
     return hash;
 }
 
-std::vector<std::uint64_t> content_hashes(const SurfelSet& set, std::span<const std::uint64_t> seeds) {
+std::vector<std::uint64_t> content_hashes(const SurfelSet& set) {
     std::vector<std::uint64_t> hashes;
     hashes.reserve(set.surfels.size());
     for (std::size_t i = 0; i < set.surfels.size(); ++i) {
         gpu::Surfel surfel = set.surfels[i];
         const std::uint32_t first = surfel.first_point;
         surfel.first_point = surfel.map = surfel.seed = 0;
-        std::uint64_t hash = hash_bits(seeds[i], surfel);
+        std::uint64_t hash = hash_bits(set.ids[i], surfel);
         for (std::uint32_t p = first; p < first + surfel.point_count; ++p) {
             gpu::CellPoint place{};
             place.position = set.points[p].position;

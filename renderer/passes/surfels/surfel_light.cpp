@@ -233,38 +233,19 @@ struct MeanStep {
         if (program == nullptr) return;
         steps.run(*program, {},
                   {{"reflecting_count", counts.surfels},
-                   {"mean_record", counts.lit_surfels()},
+                   {"mean_record", counts.surfels},
                    {"reflected_share", shown.reflected ? 1.0F : 0.0F}});
     }
 };
 
-/// The step that sums up groups of surfels.
-struct GroupStep {
-    const gl::Program* program = nullptr;  // null: there are no groups
-
-    void run(ComputeSteps& steps, const VplCounts& counts) const {
-        if (program == nullptr || counts.groups == 0) return;
-        steps.run(*program, {groups(counts.groups, SURFEL_GROUP)},
-                  {{"group_count", counts.groups}, {"first_record", counts.surfels}});
-    }
-};
-
-GroupStep read_groups(Gpu& gpu, Pass& pass, const Surfels& surfels) {
-    if (!surfels.groups) return {};
-    pass.read(*surfels.groups, {Usage::storage, BINDING_SURFEL_GROUPS});
-    return {&gpu.program({"surfels/surfel_groups.comp"})};
-}
-
 /// Declares the surfels as VPLs. The light of the sky is emitted light.
-LitSurfels write_lit_surfels(FrameGraph& graph, Pass& pass, const Surfels& surfels,
-                             const SurfelSources& sources, ShownLight shown) {
+LitSurfels write_lit_surfels(FrameGraph& graph, Pass& pass, const SurfelSources& sources, ShownLight shown) {
     LitSurfels lit{.surfels = pass.write(growing_buffer<gpu::LitSurfel>(graph, "lit surfels"),
                                          {Usage::storage, BINDING_LIT_SURFELS}),
                    .emitters = {},
                    .points = pass.write(growing_buffer<gpu::LitPoint>(graph, "lit points"),
                                         {Usage::storage, BINDING_LIT_POINTS}),
                    .sky = shown.emitted ? sources.sky : std::nullopt,
-                   .group_size = surfels.group_size,
                    .balanced = sources.balanced};
     if (sources.emitters) {
         lit.emitters = pass.write(growing_buffer<gpu::LitEmitter>(graph, "lit emitters"),
@@ -297,13 +278,12 @@ Vpls add_surfel_light(FrameGraph& graph, Gpu& gpu, const Tracing& tracing, const
         pass.parameter(shown);
         const BouncePrograms programs = bounce_programs(gpu, writer_variant(sources));
         const MeanStep mean_step{sources.balanced ? &gpu.program({"surfels/surfel_mean.comp"}) : nullptr};
-        const GroupStep group_step = read_groups(gpu, pass, surfels);
         const gl::Program& adder = gpu.program({"surfels/surfel_cells.comp"});
         const auto cells = pass.write(growing_buffer<gpu::CellLight>(graph, "lit cells"),
                                       {Usage::storage, BINDING_CELL_LIGHT});
         const auto bounced =
             pass.write(growing_buffer<glm::vec4>(graph, "bounced light"), {Usage::storage, BINDING_BOUNCE});
-        const LitSurfels lit = write_lit_surfels(graph, pass, surfels, sources, shown);
+        const LitSurfels lit = write_lit_surfels(graph, pass, sources, shown);
         const Vpls out{.counts = pass.write(graph.value<VplCounts>("vpl counts")),
                        .flux = pass.write(growing_buffer<gpu::FluxAccount>(graph, "flux"),
                                           {Usage::storage, BINDING_FLUX_ACCOUNT}),
@@ -319,7 +299,7 @@ Vpls add_surfel_light(FrameGraph& graph, Gpu& gpu, const Tracing& tracing, const
             const auto [count, points] = numbers_of(run, surfels);
             run.reserve(cells, count);
             run.reserve(bounced, 4 * count);
-            run.reserve(lit.surfels, count + counts.groups + (lit.balanced ? 1 : 0));
+            run.reserve(lit.surfels, count + (lit.balanced ? 1 : 0));
             run.reserve(lit.points, points);
             if (lit.emitters) run.reserve(*lit.emitters, counts.emitters);
             if (count == 0) return;
@@ -330,11 +310,9 @@ Vpls add_surfel_light(FrameGraph& graph, Gpu& gpu, const Tracing& tracing, const
             (programs.further == nullptr ? gather_at_once : gather_one_by_one)(steps, programs, count,
                                                                                bounces);
             mean_step.run(steps, counts, shown);
-            steps.run(
-                programs.writer, {groups(count, SURFEL_GROUP)},
-                count_uniforms(count) + share_uniforms(shown) +
-                    gl::Uniforms{{"emitting_count", counts.emitters}, {"mean_record", counts.lit_surfels()}});
-            group_step.run(steps, counts);
+            steps.run(programs.writer, {groups(count, SURFEL_GROUP)},
+                      count_uniforms(count) + share_uniforms(shown) +
+                          gl::Uniforms{{"emitting_count", counts.emitters}, {"mean_record", counts.surfels}});
         });
         return out;
     });

@@ -202,8 +202,8 @@ void SurfelPlacement::split(std::vector<Cell>& cells, std::size_t index,
         guides[tree_.half_of(whole.patch, guide[i].place)].push_back(i);
     }
     const std::uint32_t first = tree_[whole.patch].first;
-    cells[index] = {first, whole.scale, whole.branch, std::move(guides[0])};
-    cells.push_back({first + 1, whole.scale, whole.branch, std::move(guides[1])});
+    cells[index] = {first, whole.scale, std::move(guides[0])};
+    cells.push_back({first + 1, whole.scale, std::move(guides[1])});
 }
 
 /// Cuts cells, always the one of the greatest weight, until there are `count`.
@@ -243,11 +243,7 @@ SurfelPlacement::CutCells SurfelPlacement::cells_of(std::vector<Cell> whole, std
         return weight_of(cell, weights) * std::exp2(random_of(tree_[cell.patch].id, use_weight));
     };
     const Cutting cutting{.guide = weights.guide, .within = within, .record = &of.cut};
-    of.cells = cut(std::move(whole), std::min(count, most_branches), weight, cutting);
-    for (std::uint32_t i = 0; i < of.cells.size(); ++i) of.cells[i].branch = i;
-    if (count <= most_branches) return of;
-    of.cells = cut(std::move(of.cells), count, weight, cutting);
-    std::ranges::stable_sort(of.cells, {}, &Cell::branch);
+    of.cells = cut(std::move(whole), count, weight, cutting);
     return of;
 }
 
@@ -329,7 +325,6 @@ void SurfelPlacement::append(SurfelSet& set, const Cell& cell, std::uint32_t poi
         set.point_places[first + static_cast<std::size_t>(middle - points_of_cell.begin())]);
     set.item_of.push_back(patch.item);
     set.patches.push_back(patch.id);
-    set.branches.push_back(cell.branch);
     set.ids.push_back(
         combine_ids(patch.id, combine_ids(std::bit_cast<std::uint64_t>(cell.scale), use_scale)));
 }

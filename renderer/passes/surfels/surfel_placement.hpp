@@ -22,19 +22,12 @@ struct SurfelSet {
     std::vector<std::uint64_t> ids;      ///< by surfel: equal ones are of the same cell of the same item
     std::vector<std::uint64_t> patches;  ///< the same, however much of the other items it stands for
     std::vector<std::uint32_t> item_of;  ///< by surfel: index into SceneGeometry::items
-    /// By surfel: which branch of the trees its cell is on, of most_branches at most. Surfels of a branch
-    /// follow each other. Surfels that emit light are numbered by themselves.
-    std::vector<std::uint32_t> branches;
     std::vector<SurfacePoint> surfel_places;
     std::vector<SurfacePoint> point_places;
     std::uint32_t emitting_count = 0;  ///< surfels that emit light: the last ones
     PatchCut cut;                      ///< whose cells they are
     ChangesLeft left;                  ///< until it is the cut that is wanted
 };
-
-/// Where more cells are wanted, the trees are first cut into so many branches: pixels far from the surfels of
-/// a branch see them as one.
-inline constexpr std::uint32_t most_branches = 512;
 
 /// About how many points a cell has, of surfels that only reflect light and of those that emit it; fewer of
 /// these where there are more than emitting_surfels, but as many as of the others.
@@ -109,8 +102,7 @@ class SurfelPlacement {
     /// A cell that surfels are placed on.
     struct Cell {
         std::uint32_t patch = 0;
-        double scale = 1.0;  ///< how many times its area it stands for
-        std::uint32_t branch = 0;
+        double scale = 1.0;                   ///< how many times its area it stands for
         std::vector<std::uint32_t> guides{};  ///< indices of the guide's points in it
     };
     /// By what trees are cut.

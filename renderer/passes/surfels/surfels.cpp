@@ -10,7 +10,6 @@
 #include "renderer/gpu/growing_buffer.hpp"
 #include "renderer/passes/scene/traced_content.hpp"
 #include "renderer/passes/surfels/cell_division.hpp"
-#include "renderer/passes/surfels/surfel_groups.hpp"
 #include "renderer/passes/surfels/surfel_ids.hpp"
 
 namespace candela {
@@ -86,33 +85,6 @@ std::vector<CellPlace> cell_places_of(const SurfelSet& set) {
     return places;
 }
 
-/// Resources of surfels in groups.
-struct GroupNode {
-    ValueHandle<DividedCells> divided;  // the branches
-    BufferHandle<gpu::SurfelGroup> groups;
-};
-
-std::optional<GroupNode> write_groups(FrameGraph& graph, Pass& pass, std::uint32_t group_size) {
-    if (group_size == 1) return std::nullopt;
-    return GroupNode{
-        .divided = pass.update(graph.value<DividedCells>("divided branches")),
-        .groups = pass.write(growing_buffer<gpu::SurfelGroup>(graph, "surfel groups"), Usage::copy)};
-}
-
-/// Puts the surfels of a set in groups. Returns how many.
-std::uint32_t form_groups(const Gpu& gpu, Execution& run, const GroupNode& node, SurfelSet& set,
-                          const TracedScene& scene, float ray_offset,
-                          const std::optional<std::vector<Box>>& changed) {
-    SurfelSet branches = branches_of(set);
-    branches.ids = content_hashes(branches, branches.ids);
-    DividedCells parts = divide_cells(branches, scene, {}, ray_offset, run.previous(node.divided), changed);
-    GroupedSurfels in_groups = grouped(set, branches, parts.cells);
-    upload<gpu::SurfelGroup>(gpu, run, node.groups, in_groups.groups);
-    run.set(node.divided, std::move(parts));
-    set = std::move(in_groups.set);
-    return static_cast<std::uint32_t>(in_groups.groups.size());
-}
-
 /// Resources of the node.
 struct SurfelNode {
     SceneData scene;
@@ -124,7 +96,6 @@ struct SurfelNode {
     std::uint32_t wanted = 0;
     ValueHandle<DividedCells> divided;
     TracedContent<DivisionKey> known;
-    std::optional<GroupNode> groups;
     Surfels out;
 };
 
@@ -146,11 +117,10 @@ void place_surfels(const Gpu& gpu, Execution& run, const SurfelNode& node) {
                                       run.previous(node.divided), changed);
     SurfelSet set = divided(whole, cells.cells);
     run.set(node.divided, std::move(cells));
-    VplCounts counts = counts_of(set);
-    if (node.groups) counts.groups = form_groups(gpu, run, *node.groups, set, traced, ray_offset, changed);
+    const VplCounts counts = counts_of(set);
     std::vector<std::uint64_t> cell_ids = set.patches;
     make_unique(cell_ids);
-    set.ids = content_hashes(set, set.ids);
+    set.ids = content_hashes(set);
     make_unique(set.ids);
     run.set(out.maps,
             place_maps(std::span(set.surfels).first(counts.surfels), cell_ids, set.ids,
@@ -181,8 +151,6 @@ Surfels add_surfels(FrameGraph& graph, const Gpu& gpu, const SceneData& scene, c
         pass.read(focus_of_maps);
         if (clock) pass.read(*clock);
         pass.keeps_state();
-        const std::uint32_t group_size = surfels_a_group(wanted);
-        const std::optional<GroupNode> groups = write_groups(graph, pass, group_size);
         const Surfels out{
             .counts = pass.write(graph.value<VplCounts>("surfel counts")),
             .point_count = pass.write(graph.value<std::uint32_t>("cell point count")),
@@ -192,9 +160,7 @@ Surfels add_surfels(FrameGraph& graph, const Gpu& gpu, const SceneData& scene, c
             .cell_places = pass.write(graph.value<std::vector<CellPlace>>("places of cell points")),
             .maps = pass.update(graph.value<SurfelMaps>("surfel maps")),
             .surfels = pass.write(growing_buffer<gpu::Surfel>(graph, "surfels"), Usage::copy),
-            .points = pass.write(growing_buffer<gpu::CellPoint>(graph, "cell points"), Usage::copy),
-            .groups = groups ? std::optional(groups->groups) : std::nullopt,
-            .group_size = group_size};
+            .points = pass.write(growing_buffer<gpu::CellPoint>(graph, "cell points"), Usage::copy)};
         const SurfelNode node{.scene = scene,
                               .tracing = tracing,
                               .motion = motion,
@@ -204,7 +170,6 @@ Surfels add_surfels(FrameGraph& graph, const Gpu& gpu, const SceneData& scene, c
                               .wanted = wanted,
                               .divided = pass.update(graph.value<DividedCells>("divided cells")),
                               .known = TracedContent<DivisionKey>(graph, pass, "known division"),
-                              .groups = groups,
                               .out = out};
         pass.run([=, &gpu](Execution& run) { place_surfels(gpu, run, node); });
         return out;

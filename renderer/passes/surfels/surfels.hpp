@@ -49,16 +49,14 @@ struct Surfels {
     ValueHandle<SurfelMaps> maps;                       ///< of those that do not emit light
     BufferHandle<gpu::Surfel> surfels;                  ///< those that emit light are the last ones
     BufferHandle<gpu::CellPoint> points;
-    std::optional<BufferHandle<gpu::SurfelGroup>> groups{};  ///< VplCounts::groups; none: there are none
-    std::uint32_t group_size = 1;                            ///< surfels_a_group
 };
 
 /// Adds node `surfels` (CPU, then upload): moves the surfels to where they are in the world
-/// (placed_in_world), divides cells that surfaces cut (divide_cell), and puts them in groups if there are
-/// many. Only cells that are new, that move, or near which something moves, are divided again. Depends on the
-/// spread surfels, the scene's layout and placement, BVH, motion, focus and clock, and on its own last
-/// result: surfels that stay keep the slots of their depth maps. With a clock whose limit they exceed, a
-/// quarter of it get maps of another focus in a frame: see place_maps. `wanted`: VplSettings::count.
+/// (placed_in_world) and divides cells that surfaces cut (divide_cell). Only cells that are new, that move,
+/// or near which something moves, are divided again. Depends on the spread surfels, the scene's layout and
+/// placement, BVH, motion, focus and clock, and on its own last result: surfels that stay keep the slots of
+/// their depth maps. With a clock whose limit they exceed, a quarter of it get maps of another focus in a
+/// frame: see place_maps. `wanted`: VplSettings::count.
 [[nodiscard]] Surfels add_surfels(FrameGraph& graph, const Gpu& gpu, const SceneData& scene,
                                   const Tracing& tracing, ValueHandle<SceneMotion> motion,
                                   ValueHandle<SpreadSurfels> spread, ValueHandle<Focus> focus_of_maps,

@@ -26,8 +26,8 @@ VplAtlas atlas_of_scene(const VplVisibilitySettings& settings, std::uint32_t map
 
 gpu::VplConstants constants_of(const VplCounts& counts, const SceneMetrics& metrics, const VplAtlas& atlas) {
     return {.count = counts.sources(),
-            .first_emitter = counts.mapped_sources(),
-            .first_sky_patch = counts.mapped_sources() + counts.emitters,
+            .first_emitter = counts.mapped(),
+            .first_sky_patch = counts.mapped() + counts.emitters,
             .ray_offset = metrics.ray_offset(),
             .map_resolution = atlas.resolution,
             .map_tiles = atlas.tiles,
@@ -36,7 +36,7 @@ gpu::VplConstants constants_of(const VplCounts& counts, const SceneMetrics& metr
             .foci = {},
             .mapped = counts.mapped(),
             .first_direction = counts.sources() - counts.directions,
-            .mean_record = counts.lit_surfels()};
+            .mean_record = counts.surfels};
 }
 
 static_assert(std::extent_v<decltype(gpu::VplConstants::foci)> == SURFEL_MAP_FOCI);

@@ -24,7 +24,6 @@ struct LitSurfels {
         emitters;                        ///< VplCounts::emitters; none: no surface emits light
     BufferHandle<gpu::LitPoint> points;  ///< of the cells of both
     std::optional<SkyPatches> sky;       ///< none: the world has no sky, or its light is not shown
-    std::uint32_t group_size = 1;  ///< surfels_a_group; if above 1, records of groups follow the surfels'
     /// One surfel stands for several objects. The surfels' light is what exceeds a mean, and VPLs that are
     /// directions add the mean: shaders/README.md, "Shared items". The record behind all has the mean.
     bool balanced = false;
