@@ -241,6 +241,24 @@ TEST_CASE("surfels are dense where a guide says that light comes from, and the r
     CHECK(total_area(set) == doctest::Approx(4.0).epsilon(1e-4));
 }
 
+TEST_CASE("a point of a guide stands for its area, which is cut evenly however many cells there are") {
+    // A quarter of the square, whose point has all of the light, and a point without light for the rest.
+    const std::vector<GuidePoint> guide{
+        {.place = {.triangle = 0, .weights = {0.3F, 0.3F}}, .area = 1.0F, .share = 1.0F},
+        {.place = {.triangle = 1, .weights = {0.3F, 0.3F}}, .area = 3.0F, .share = 0.0F}};
+    constexpr std::uint32_t count = 256;
+    const SurfelSet set = SurfelPlacement(square(), test_seed()).place({.reflecting = count}, {}, guide);
+    // Patches of equal weight are cut up to one level apart, and a cut is up to 0.2 standard deviations off
+    // the middle: halves have at least a third of a patch.
+    const float least = 1.0F / (3.0F * 3.0F * static_cast<float>(count));
+    for (const gpu::Surfel& surfel : set.surfels) CHECK(surfel.area > least);
+    // The cell in which the point is at first has half of its area at least.
+    const auto small = std::ranges::count_if(set.surfels, [&](const gpu::Surfel& surfel) {
+        return surfel.area < 3.0F / static_cast<float>(count);
+    });
+    CHECK(small > count / 2);
+}
+
 TEST_CASE("a guide without light changes nothing") {
     const std::vector<GuidePoint> dark{{.place = {.triangle = 0}, .area = 1.0F, .share = 0.0F}};
     const SurfelSet plain = placed(cube(), {.reflecting = 100}, test_seed());

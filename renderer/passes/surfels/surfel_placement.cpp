@@ -139,7 +139,11 @@ double SurfelPlacement::weight_of(const Cell& cell, const Weights& weights) cons
     const Patch& patch = tree_[cell.patch];
     const auto density = static_cast<double>(density_in(patch.box, foci_of(patch.item, weights.foci)));
     double share = 0.0;
-    for (const std::uint32_t i : cell.guides) share += static_cast<double>(weights.guide[i].share);
+    for (const std::uint32_t i : cell.guides) {
+        const GuidePoint& point = weights.guide[i];
+        share += static_cast<double>(point.share) *
+                 std::min(patch.area / static_cast<double>(point.area), 1.0);
+    }
     const double size = weights.of_share * share + weights.of_area * patch.area * cell.scale * density;
     return size * (1.0 + weight_of_bend * static_cast<double>(patch.bend));
 }
@@ -198,10 +202,15 @@ void SurfelPlacement::split(std::vector<Cell>& cells, std::size_t index,
                             std::span<const GuidePoint> guide) const {
     const Cell whole = std::move(cells[index]);
     std::array<std::vector<std::uint32_t>, 2> guides;
+    const Patch& patch = tree_[whole.patch];
     for (const std::uint32_t i : whole.guides) {
-        guides[tree_.half_of(whole.patch, guide[i].place)].push_back(i);
+        // Both halves of a patch that is smaller than what the point stands for are parts of that.
+        const bool is_within = patch.area <= static_cast<double>(guide[i].area);
+        const std::uint32_t half = tree_.half_of(whole.patch, guide[i].place);
+        if (is_within || half == 0) guides[0].push_back(i);
+        if (is_within || half == 1) guides[1].push_back(i);
     }
-    const std::uint32_t first = tree_[whole.patch].first;
+    const std::uint32_t first = patch.first;
     cells[index] = {first, whole.scale, std::move(guides[0])};
     cells.push_back({first + 1, whole.scale, std::move(guides[1])});
 }
