@@ -7,9 +7,10 @@
 #include "renderer/gpu/loop_parts.hpp"
 
 namespace candela {
-
 namespace {
 
+/// Iterations of loops that a VPL takes at a surface, if few VPLs are seen by rays. A surface near the cell
+/// of a surfel evaluates its points.
 std::uint32_t iterations_if_few_have_rays(const VplLight& light) {
     if (light.rays) {
         return light.maps ? iterations_a_ray / 16 : iterations_a_ray / 2;  // few need rays

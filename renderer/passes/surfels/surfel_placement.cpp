@@ -11,6 +11,7 @@
 #include <optional>
 #include <queue>
 #include <tuple>
+#include <unordered_map>
 #include <utility>
 
 #include "renderer/passes/scene/image_texel.hpp"
@@ -141,8 +142,8 @@ double SurfelPlacement::weight_of(const Cell& cell, const Weights& weights) cons
     double share = 0.0;
     for (const std::uint32_t i : cell.guides) {
         const GuidePoint& point = weights.guide[i];
-        share += static_cast<double>(point.share) *
-                 std::min(patch.area / static_cast<double>(point.area), 1.0);
+        share +=
+            static_cast<double>(point.share) * std::min(patch.area / static_cast<double>(point.area), 1.0);
     }
     const double size = weights.of_share * share + weights.of_area * patch.area * cell.scale * density;
     return size * (1.0 + weight_of_bend * static_cast<double>(patch.bend));
@@ -242,17 +243,42 @@ std::vector<SurfelPlacement::Cell> SurfelPlacement::cut(std::vector<Cell> cells,
     return cells;
 }
 
+/// The cells that `whole` were cut into, in the order in which their trees list them: neighbours follow each
+/// other, so that surfels and pixels that gather from every n-th surfel gather from everywhere.
+std::vector<SurfelPlacement::Cell> SurfelPlacement::in_order(std::vector<Cell> cells,
+                                                             std::vector<std::uint32_t> whole) const {
+    std::unordered_map<std::uint32_t, std::size_t> index_of;
+    for (std::size_t i = 0; i < cells.size(); ++i) index_of.emplace(cells[i].patch, i);
+    std::vector<Cell> ordered;
+    ordered.reserve(cells.size());
+    std::ranges::reverse(whole);
+    while (!whole.empty()) {
+        const std::uint32_t patch = whole.back();
+        whole.pop_back();
+        if (const auto found = index_of.find(patch); found != index_of.end()) {
+            ordered.push_back(std::move(cells[found->second]));
+        } else {
+            whole.insert(whole.end(), {tree_[patch].first + 1, tree_[patch].first});
+        }
+    }
+    return ordered;
+}
+
 /// Cuts items into `count` cells. `within`: null: wherever the weight is greatest.
 SurfelPlacement::CutCells SurfelPlacement::cells_of(std::vector<Cell> whole, std::uint32_t count,
                                                     const Weights& weights, const PatchCut* within) {
     CutCells of;
-    for (const Cell& item : whole) of.cut.scales.emplace(tree_[item.patch].id, item.scale);
+    std::vector<std::uint32_t> items;
+    for (const Cell& item : whole) {
+        items.push_back(item.patch);
+        of.cut.scales.emplace(tree_[item.patch].id, item.scale);
+    }
     // Patches of equal size are not all cut at once: that would leave large areas of cells of twice the size.
     const auto weight = [&](const Cell& cell) {
         return weight_of(cell, weights) * std::exp2(random_of(tree_[cell.patch].id, use_weight));
     };
     const Cutting cutting{.guide = weights.guide, .within = within, .record = &of.cut};
-    of.cells = cut(std::move(whole), count, weight, cutting);
+    of.cells = in_order(cut(std::move(whole), count, weight, cutting), std::move(items));
     return of;
 }
 

@@ -145,6 +145,7 @@ class SurfelPlacement {
     template <class Weight>
     [[nodiscard]] std::vector<Cell> cut(std::vector<Cell> cells, std::uint32_t count, const Weight& weigh,
                                         const Cutting& cutting);
+    [[nodiscard]] std::vector<Cell> in_order(std::vector<Cell> cells, std::vector<std::uint32_t> whole) const;
     void append(SurfelSet& set, const Cell& cell, std::uint32_t points);
 
     SceneSurfaces surfaces_;
