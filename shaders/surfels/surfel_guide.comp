@@ -1,6 +1,6 @@
-// How much of the light that is seen comes from each surfel. The flux of its cell is carried along the
-// form factors to those that are seen, each time relative to the light that arrives there. First (SEEN) one invocation for
-// each cell that may be seen, then one for each that sends light.
+// How much an error in the light of each surfel is seen. The flux of its cell is carried along the form factors to those
+// that are seen, each time relative to the light that arrives there; the squares add up: README.md, "Guide". First
+// (SEEN) one invocation for each cell that may be seen, then one for each that sends light.
 #include "surfels/surfel.glsl"
 
 layout(local_size_x = SURFEL_GROUP) in;
@@ -8,7 +8,8 @@ layout(local_size_x = SURFEL_GROUP) in;
 layout(std430, binding = BINDING_FORM_FACTORS) readonly restrict buffer FormFactors { uint form_factors[]; };
 layout(std430, binding = BINDING_SURFEL_ROWS) readonly restrict buffer Rows { vec2 rows[]; };  // x: scale
 layout(std430, binding = BINDING_LIT_SURFELS) readonly restrict buffer LitSurfels { LitSurfel lit_surfels[]; };
-// By surfel: number of rays from the eyes that meet its cell; after the first step, that relative to the irradiance there.
+// By surfel: number of rays from the eyes that meet its cell; after the first step, the root of that over the irradiance
+// there.
 layout(std430, binding = BINDING_SEEN_SURFELS) restrict buffer Seen { float seen[]; };
 
 uniform uint sending_count;  // surfels that send light: the first ones
@@ -28,7 +29,7 @@ void main() {
         LitSurfel from = lit_surfels[i];
         if (from.area > 0.0) irradiance += factor(id, i) * dot(from.flux, vec3(1.0)) / from.area;
     }
-    seen[id] = irradiance > 0.0 ? seen[id] / irradiance : 0.0;
+    seen[id] = irradiance > 0.0 ? sqrt(seen[id]) / irradiance : 0.0;
 }
 
 #else
@@ -38,12 +39,14 @@ layout(std430, binding = BINDING_GUIDE) writeonly restrict buffer Guide { float 
 void main() {
     uint id = gl_GlobalInvocationID.x;
     if (id >= sending_count) return;
-    float carried = 0.0;
+    float squares = 0.0;
     for (uint i = 0u; i < surfel_count; ++i) {
-        if (seen[i] > 0.0) carried += seen[i] * factor(i, id);
+        if (seen[i] == 0.0) continue;
+        float carried = seen[i] * factor(i, id);
+        squares += carried * carried;
     }
     LitSurfel own = lit_surfels[id];
-    shares[id] = own.area > 0.0 ? carried * dot(own.flux, vec3(1.0)) / own.area : 0.0;
+    shares[id] = own.area > 0.0 ? sqrt(squares) * dot(own.flux, vec3(1.0)) / own.area : 0.0;
 }
 
 #endif

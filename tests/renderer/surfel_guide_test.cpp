@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <cstdint>
+#include <deque>
 #include <vector>
 
 #include "renderer/facade/device_of.hpp"
@@ -38,9 +39,16 @@ class GuideTests : public RenderFixture {
         configuration_.visibility.method = VplVisibility::none;
     }
 
-    std::vector<gpu::LitSurfel> surfels_of(const Scene& scene) {
-        const RenderView view{.camera = scene.camera, .target = target_.target(), .keep = {.vpls = true}};
-        renderer.render(scene.world, {&view, 1});
+    std::vector<gpu::LitSurfel> surfels_of(const Scene& scene) { return surfels_of(scene, {scene.camera}); }
+
+    /// With a view for each camera.
+    std::vector<gpu::LitSurfel> surfels_of(const Scene& scene, const std::vector<Entity>& cameras) {
+        std::vector<RenderView> views;
+        while (targets_.size() < cameras.size()) targets_.emplace_back(device, size);
+        for (std::size_t i = 0; i < cameras.size(); ++i) {
+            views.push_back({.camera = cameras[i], .target = targets_[i].target(), .keep = {.vpls = true}});
+        }
+        renderer.render(scene.world, views);
         const ResultBuffer result = renderer.results().lit_surfels;
         std::vector<gpu::LitSurfel> surfels(result.count);
         device.gl().GetNamedBufferSubData(result.buffer, 0,
@@ -52,7 +60,7 @@ class GuideTests : public RenderFixture {
     Configuration configuration_ = linear_configuration();
 
  private:
-    RenderTarget target_{device, size};
+    std::deque<RenderTarget> targets_;
 };
 
 /// Share of the surfels of which `holds` is true.
@@ -72,6 +80,21 @@ TEST_CASE_FIXTURE(GuideTests,
     const double share = share_of(surfels_of(closed_rooms()), is_elsewhere);
     CHECK(share < 2.0 * 0.083);
     CHECK(share > 0.5 * 0.083);
+}
+
+TEST_CASE_FIXTURE(GuideTests,
+                  "a room that fills four times as much of the pictures has twice as many surfels") {
+    // The relMSE of a room of n pixels and s surfels, whose errors are independent, is about n / s; of both
+    // rooms together it is least if s is as the root of n.
+    Scene scene = closed_rooms();
+    const Entity other =
+        add(scene.world, looking({apart, 0, 0.9F}, {apart, 0, 0}), Camera{.vertical_fov = 1.5F});
+    configure(configuration_);
+    const auto surfels = surfels_of(scene, {scene.camera, scene.camera, scene.camera, scene.camera, other});
+    const auto is_first = [](const gpu::LitSurfel& surfel) { return surfel.position.x < 0.5F * apart; };
+    // Light counts 1 and area 0.2, of which half is there: (2 / 3 + 0.1) / 1.2. In proportion to n it would
+    // be 0.75. The rooms are alike, so that the worth of their cells varies alike.
+    CHECK(share_of(surfels, is_first) == doctest::Approx(0.639).epsilon(0.03));
 }
 
 TEST_CASE_FIXTURE(GuideTests, "what is brighter has more surfels, in proportion to what it sends") {

@@ -19,10 +19,10 @@ namespace candela {
     return std::min(count, 512U);
 }
 
-/// Adds node `surfel-guide` (CPU and compute): how much of the light that the views see comes from each cell
-/// of a coarse set of surfels. Rays through the pictures count how often each cell is seen; its share of the
-/// picture is then given to the cells that light it, by the form factors and their flux (one step of
-/// importance; Smits et al., "An Importance-Driven Radiosity Algorithm", 1992). The result is read back, for
+/// Adds node `surfel-guide` (CPU and compute): how much the views would see of an error in the light of each
+/// cell of a coarse set of surfels. Rays through the pictures count how often each cell is seen; its share of
+/// the picture is then given to the cells that light it, by the form factors and their flux (one step of
+/// importance; shaders/README.md, "Guide"). The result is read back, for
 /// which the CPU waits. `spread`, `visibility` and `lit`: the coarse set, which has no more surfels than
 /// MOST_COLUMNS. Depends on them, on `requests` (all views), Camera, Transform and BVH.
 [[nodiscard]] ValueHandle<SurfelGuide> add_surfel_guide(FrameGraph& graph, Gpu& gpu, const SceneData& scene,

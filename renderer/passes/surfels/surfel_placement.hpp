@@ -50,7 +50,7 @@ inline constexpr std::uint32_t most_emitting_items = 1024;
     return items > std::max(count / 4, few_items);
 }
 
-/// A point of surfaces that reflect light, and how much of the light that views see it sends, directly.
+/// A point of surfaces that reflect light, and how much views would see of an error in its light.
 struct GuidePoint {
     SurfacePoint place;
     float area = 0.0F;   ///< m², of the surface that it stands for
