@@ -193,8 +193,8 @@ void add_direction(inout Gathered gathered, uint direction, Surface surface) {
 
 #endif
 
-// Adds π times the irradiance from the VPL of that index: the kinds follow one another. Kinds whose light is not shown send none. Loops over the surfaces inside, so that the VPL is fetched, and the
-// frame of its map made, once.
+// Adds π times the irradiance from the VPL of that index: the kinds follow one another. Kinds whose light is not shown send
+// none. Loops over the surfaces inside, so that the VPL is fetched, and the frame of its map made, once.
 void add_vpl(uint index, Surface surfaces[SURFACES], inout Gathered gathered[SURFACES]) {
     if (index < vpl_constants.first_emitter) {
         add_surfel(lit_surfel_at(index), surfaces, gathered);

@@ -22,9 +22,9 @@ namespace candela {
 /// Adds node `surfel-guide` (CPU and compute): how much the views would see of an error in the light of each
 /// cell of a coarse set of surfels. Rays through the pictures count how often each cell is seen; its share of
 /// the picture is then given to the cells that light it, by the form factors and their flux (one step of
-/// importance; shaders/README.md, "Guide"). The result is read back, for
-/// which the CPU waits. `spread`, `visibility` and `lit`: the coarse set, which has no more surfels than
-/// MOST_COLUMNS. Depends on them, on `requests` (all views), Camera, Transform and BVH.
+/// importance; shaders/README.md, "Guide"). The result is read back, for which the CPU waits. `spread`,
+/// `visibility` and `lit`: the coarse set, which has no more surfels than MOST_COLUMNS. Depends on them, on
+/// `requests` (all views), Camera, Transform and BVH.
 [[nodiscard]] ValueHandle<SurfelGuide> add_surfel_guide(FrameGraph& graph, Gpu& gpu, const SceneData& scene,
                                                         const Tracing& tracing,
                                                         ValueHandle<std::vector<ViewRequest>> requests,
