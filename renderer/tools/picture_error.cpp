@@ -48,6 +48,18 @@ std::vector<glm::dvec4> blurred_along(const std::vector<glm::dvec4>& pixels, glm
     return sums;
 }
 
+/// mean((a - p) · (a - q) / (|r|² + 0.01 |m|²)), r being the mean of p and q.
+double relative_mean(const Picture& a, const Picture& p, const Picture& q,
+                     std::span<const std::uint8_t> hit) {
+    const double mean_square = square(0.5 * (mean_vector(p, hit) + mean_vector(q, hit)));
+    return mean_over(a.pixels.size(), hit, [&](std::size_t i) {
+        const glm::dvec3 from_p = glm::dvec3(a.pixels[i]) - glm::dvec3(p.pixels[i]);
+        const glm::dvec3 from_q = glm::dvec3(a.pixels[i]) - glm::dvec3(q.pixels[i]);
+        const glm::dvec3 r = 0.5 * (glm::dvec3(p.pixels[i]) + glm::dvec3(q.pixels[i]));
+        return ratio(glm::dot(from_p, from_q), square(r) + floor_of_square * mean_square);
+    });
+}
+
 Picture blurred(const Picture& picture, std::span<const std::uint8_t> hit) {
     const double deviation = picture.size.x / 120.0;
     std::vector<glm::dvec4> pixels;
@@ -64,17 +76,24 @@ Picture blurred(const Picture& picture, std::span<const std::uint8_t> hit) {
 
 }  // namespace
 
+double relative_mse(const Picture& picture, const Picture& reference, std::span<const std::uint8_t> hit) {
+    require_comparable(picture, reference, hit);
+    return relative_mean(picture, reference, reference, hit);
+}
+
+double relative_mse(const Picture& picture, const Halves& reference, std::span<const std::uint8_t> hit) {
+    for (const Picture& half : reference) require_comparable(picture, half, hit);
+    return relative_mean(picture, reference[0], reference[1], hit);
+}
+
 double blotch(const Picture& picture, const Picture& reference, std::span<const std::uint8_t> hit) {
     require_comparable(picture, reference, hit);
     return relative_mse(blurred(picture, hit), blurred(reference, hit), hit);
 }
 
-double relative_mse(const Picture& picture, const Picture& reference, std::span<const std::uint8_t> hit) {
-    require_comparable(picture, reference, hit);
-    const double mean_square = square(mean_vector(reference, hit));
-    return mean_over(picture.pixels.size(), hit, [&](std::size_t i) {
-        return relative_square(picture.pixels[i], reference.pixels[i], mean_square);
-    });
+double blotch(const Picture& picture, const Halves& reference, std::span<const std::uint8_t> hit) {
+    for (const Picture& half : reference) require_comparable(picture, half, hit);
+    return relative_mse(blurred(picture, hit), {blurred(reference[0], hit), blurred(reference[1], hit)}, hit);
 }
 
 Blocks blocks_of(const Picture& picture, std::span<const std::uint8_t> hit, int side) {

@@ -5,6 +5,7 @@
 #include <cmath>
 #include <stdexcept>
 #include <string_view>
+#include <utility>
 
 #include <glm/common.hpp>
 #include <glm/vector_relational.hpp>
@@ -15,6 +16,7 @@
 #include "tests/sandbox/picture_reader.hpp"
 #include "tests/study/heat.hpp"
 #include "tests/study/measures.hpp"
+#include "tests/study/reference_files.hpp"
 
 namespace candela::study {
 namespace {
@@ -41,12 +43,17 @@ Picture read_finite(const Path& path) {
     return picture;
 }
 
+void require_size(const Path& path, glm::ivec2 found, glm::ivec2 size) {
+    if (found == size) return;
+    fail(path,
+         fmt::format("is {}x{}, not {}x{} as the picture to compare", found.x, found.y, size.x, size.y));
+}
+
 /// Reads a picture, which must be finite and have this size.
 Picture read_matching(const Path& path, glm::ivec2 size) {
     Picture picture = read_finite(path);
-    if (picture.size == size) return picture;
-    fail(path, fmt::format("is {}x{}, not {}x{} as the picture to compare", picture.size.x, picture.size.y,
-                           size.x, size.y));
+    require_size(path, picture.size, size);
+    return picture;
 }
 
 /// Empty without a file, which means all pixels.
@@ -60,6 +67,29 @@ Mask read_mask(const std::optional<Path>& path, glm::ivec2 size) {
         fail(*path, "masks every pixel");
     }
     return mask;
+}
+
+struct Target {
+    Halves halves;
+    Mask hit;  ///< empty: all pixels
+};
+
+Halves light_of(reference::Estimate estimate, std::string_view light) {
+    if (light == "direct") return {estimate.direct, estimate.direct};
+    if (light == "indirect") return std::move(estimate.halves);
+    return {sum(estimate.direct, estimate.halves[0]), sum(estimate.direct, estimate.halves[1])};
+}
+
+Target read_target(const Comparison& comparison, glm::ivec2 size) {
+    const Path& path = comparison.reference;
+    if (!std::filesystem::is_directory(path)) {
+        const Picture picture = read_matching(path, size);
+        return {{picture, picture}, read_mask(comparison.mask, size)};
+    }
+    reference::Estimate estimate = read_reference(path).estimate;
+    require_size(path, estimate.direct.size, size);
+    Mask hit = comparison.mask ? read_mask(comparison.mask, size) : std::move(estimate.hit);
+    return {light_of(std::move(estimate), comparison.light), std::move(hit)};
 }
 
 void check_flags(const Comparison& comparison) {
@@ -76,10 +106,10 @@ void check_flags(const Comparison& comparison) {
 std::string compare(const Comparison& comparison) {
     check_flags(comparison);
     const Picture picture = read_finite(comparison.picture);
-    const Picture reference = read_matching(comparison.reference, picture.size);
-    const Mask hit = read_mask(comparison.mask, picture.size);
+    const Target target = read_target(comparison, picture.size);
+    const Picture reference = mean_of(target.halves);
 
-    const Errors errors = measure(picture, reference, hit);
+    const Errors errors = measure(picture, target.halves, target.hit);
     std::string text;
     const auto add = [&](std::string_view name, double value) {
         text += fmt::format("{:<8} {:.6g}\n", name, value);
@@ -89,9 +119,9 @@ std::string compare(const Comparison& comparison) {
     add("bias", errors.bias);
     add("spikes", errors.spikes);
     add("blotch", errors.blotch);
-    add("FLIP", tools::flip_of_light(picture, reference, hit).mean);
+    add("FLIP", tools::flip_of_light(picture, reference, target.hit).mean);
     if (!comparison.heat) return text;
-    const HeatMap heat = heat_map(picture, reference, hit, comparison.scale);
+    const HeatMap heat = heat_map(picture, reference, target.hit, comparison.scale);
     tools::write_png(*comparison.heat, heat.size, heat.rgb);
     add("heat", heat.scale);
     return text;

@@ -11,6 +11,7 @@
 
 #include <candela/tools/picture.hpp>
 #include "tests/sandbox/temporary_folder.hpp"
+#include "tests/study/reference_files.hpp"
 #include "tests/study/test_pictures.hpp"
 
 namespace candela::study {
@@ -70,6 +71,38 @@ TEST_CASE("a mask excludes pixels, and the heat map shows them grey") {
     CHECK(bytes[0] < 10);   // no error: black
     CHECK(bytes[3] > 240);  // the largest: pale yellow
     CHECK(std::vector<int>(bytes.begin() + 9, bytes.end()) == std::vector<int>{128, 128, 128});
+}
+
+TEST_CASE("against a folder of a reference, its background and its noise do not count") {
+    const TemporaryFolder folder;
+    const glm::ivec2 size{2, 2};
+    const auto grey = [&](float value) { return constant(size, glm::vec3(value)); };
+    Reference reference;
+    reference.request.size = glm::uvec2(size);
+    reference.estimate = {.direct = grey(0.5F),
+                          .indirect = grey(2.0F),
+                          .halves = {grey(1.0F), grey(3.0F)},
+                          .hit = {1, 1, 1, 0},
+                          .edge = {0, 0, 0, 0}};
+    reference.direct_fine = grey(0.5F);
+    write_reference(folder / "reference", "a.gltf", reference);
+    Picture picture = grey(4.5F);
+    picture.pixels[3] = glm::vec3(9.0F);
+    write_pfm(folder / "a.pfm", picture);
+    const auto error = [&](const char* light) {
+        return compare({folder / "a.pfm", folder / "reference", {}, {}, {}, light});
+    };
+    // (4.5 - 1.5) (4.5 - 3.5) / (2.5² · 1.01), (4.5 - 1) (4.5 - 3) / (2² · 1.01), (4.5 - 0.5)² / (0.5²
+    // · 1.01)
+    CHECK(error("total").starts_with("relMSE   0.475248\n"));
+    CHECK(error("indirect").starts_with("relMSE   1.2995\n"));
+    CHECK(error("direct").starts_with("relMSE   63.3663\n"));
+    write_pfm(folder / "wide.pfm", constant({3, 2}, glm::vec3(1.0F)));
+    CHECK(error_of({folder / "wide.pfm", folder / "reference", {}, {}, {}}) ==
+          (folder / "reference").string() + ": is 2x2, not 3x2 as the picture to compare");
+    std::filesystem::create_directory(folder / "empty");
+    CHECK(error_of({folder / "a.pfm", folder / "empty", {}, {}, {}}).find("is it a folder of `reference`?") !=
+          std::string::npos);
 }
 
 TEST_CASE("errors name the file, and nothing is written") {

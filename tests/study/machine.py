@@ -57,8 +57,11 @@ def file_hash(path: pathlib.Path) -> str:
 
 
 def sources_hash(folder: pathlib.Path) -> str:
-    """The hash of the C++ files in a folder, except tests."""
+    """The hash of the C++ files in a folder."""
     digest = hashlib.sha256()
-    for path in sorted(path for path in folder.glob("*.[ch]pp") if not path.stem.endswith("_test")):
+    files = sorted(folder.glob("*.[ch]pp"))
+    if not files:
+        raise FileNotFoundError(f"{folder}: has no C++ files")
+    for path in files:
         digest.update(path.read_bytes())
     return digest.hexdigest()[:16]

@@ -249,7 +249,12 @@ void add_compare(CLI::App& app) {
         *app.add_subcommand("compare", "error of a picture against its reference, by every measure");
     const auto comparison = std::make_shared<Comparison>();
     part.add_option("PICTURE", comparison->picture, "linear radiance, .pfm or .exr")->required();
-    part.add_option("REFERENCE", comparison->reference, "the same view, as it should be")->required();
+    part.add_option("REFERENCE", comparison->reference,
+                    "the same view, as it should be: .pfm, .exr or a folder of `reference`, whose noise does "
+                    "not count")
+        ->required();
+    part.add_option("--show", comparison->light, "the light of that folder: total, direct or indirect")
+        ->check(CLI::IsMember({"total", "direct", "indirect"}));
     part.add_option("--mask", comparison->mask, ".pfm or .exr: pixels count where it is not 0");
     CLI::Option* const heat =
         part.add_option("--heat", comparison->heat, "write the pixels' relative errors as a .png");

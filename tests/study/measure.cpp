@@ -54,12 +54,11 @@ class Darkroom {
 struct Truth {
     Picture direct;
     Picture direct_fine;
-    Picture indirect;
-    Picture total;
+    Halves indirect;
+    Halves total;
+    Picture shown;  ///< the mean of `total`
     Mask hit;
     Mask off_edges;  ///< the pixels of `hit` away from the edges of shadows and silhouettes
-    /// Of the indirect light off edges: see rel_mse_of_blocks.
-    std::optional<double> noise_of_blocks{};
     /// Surfaces emit light, or there is a sky: VPLs carry a part of the direct light.
     bool emission = false;
 };
@@ -68,19 +67,18 @@ Truth truth_of(Reference reference) {
     reference::Estimate& estimate = reference.estimate;
     Truth truth{.direct = std::move(estimate.direct),
                 .direct_fine = std::move(reference.direct_fine),
-                .indirect = std::move(estimate.indirect),
+                .indirect = std::move(estimate.halves),
                 .total = {},
+                .shown = {},
                 .hit = std::move(estimate.hit),
                 .off_edges = {},
                 .emission = false};
-    truth.total = sum(truth.direct, truth.indirect);
+    truth.total = {sum(truth.direct, truth.indirect[0]), sum(truth.direct, truth.indirect[1])};
+    truth.shown = mean_of(truth.total);
     truth.off_edges = truth.hit;
     for (std::size_t i = 0; i < truth.off_edges.size(); ++i) {
         truth.off_edges[i] = estimate.edge[i] != 0 ? 0 : truth.off_edges[i];
     }
-    truth.noise_of_blocks = rel_mse_of_blocks(estimate.halves[0], estimate.halves[1], truth.off_edges);
-    // The squared error of the halves' mean is a quarter of their squared difference.
-    if (truth.noise_of_blocks) *truth.noise_of_blocks /= 4.0;
     return truth;
 }
 
@@ -166,7 +164,7 @@ Seeds measure_seeds(Bench& bench, Configuration configuration, const std::vector
         Picture total = truth.emission ? render(bench, configuration, Show::total) : sum(direct, indirect);
         result.indirect.push_back(measure(indirect, truth.indirect, truth.hit));
         result.total.push_back(measure(total, truth.total, truth.hit));
-        result.flip.push_back(tools::flip_of_light(total, truth.total, truth.hit).mean);
+        result.flip.push_back(tools::flip_of_light(total, truth.shown, truth.hit).mean);
         if (result.first.pixels.empty()) result.first = std::move(total);
     }
     return result;
@@ -206,11 +204,11 @@ Json errors_json(const DirectLight& direct, const Seeds& seeds, const Truth& tru
 /// The relMSE of the indirect light of surfels: as the renderer estimates it, and as it is. Null without
 /// surfels, or if edges are nearly everywhere.
 Json estimate_json(Bench& bench, const Configuration& configuration, const Truth& truth) {
-    if (configuration.vpls.placement != VplPlacement::surfels || !truth.noise_of_blocks) return nullptr;
+    if (configuration.vpls.placement != VplPlacement::surfels) return nullptr;
     const Picture indirect = render(bench, configuration, Show::indirect);
     const std::optional<double> error = rel_mse_of_blocks(indirect, truth.indirect, truth.off_edges);
-    return {{"estimated", bench.estimate_error().value()},
-            {"measured", error.value() - *truth.noise_of_blocks}};
+    if (!error) return nullptr;
+    return {{"estimated", bench.estimate_error().value()}, {"measured", *error}};
 }
 
 Json per_seed_json(const Point& point, const Seeds& seeds) {
@@ -293,7 +291,7 @@ Json measure_point(Bench bench, Darkroom& darkroom, const Truth& truth, const Di
             {"work", work_json(report, bench.covered_pixels())},
             {"memory", memory_json(report.memory)},
             {"picture", darkroom.develop(point.id, seeds.first)},
-            {"heat", darkroom.heat(point.id, seeds.first, truth.total, truth.hit)},
+            {"heat", darkroom.heat(point.id, seeds.first, truth.shown, truth.hit)},
             {"heat_scale", heat_scale}};
 }
 
@@ -358,7 +356,7 @@ int measure(const MeasureStudy& study) {
     const auto context = HeadlessContext::create(study.context);
     context->make_current();
     Darkroom darkroom(context->get_proc(), reference.request.size, study.pictures);
-    darkroom.develop("reference", truth.total);
+    darkroom.develop("reference", truth.shown);
     const auto fresh_bench = [&] { return Bench(context->get_proc(), scene.world, reference.request.size); };
 
     DirectLights direct_lights(truth.emission);

@@ -7,6 +7,7 @@
 #include <stdexcept>
 
 #include <glm/common.hpp>
+#include <glm/geometric.hpp>
 #include <glm/vec3.hpp>
 
 namespace candela::study {
@@ -69,18 +70,32 @@ void require_sequences(std::span<const Picture> frames, std::span<const Picture>
 }  // namespace
 
 Errors measure(const Picture& picture, const Picture& reference, std::span<const std::uint8_t> hit) {
+    return measure(picture, Halves{reference, reference}, hit);
+}
+
+Errors measure(const Picture& picture, const Halves& reference, std::span<const std::uint8_t> hit) {
     const double rel_mse = tools::relative_mse(picture, reference, hit);
-    const auto a = [&](std::size_t i) { return glm::dvec3(picture.pixels[i]); };
-    const auto r = [&](std::size_t i) { return glm::dvec3(reference.pixels[i]); };
-    const auto mean_of = [&](auto value) { return mean_over(picture.pixels.size(), hit, value); };
+    const Picture mean = mean_of(reference);
+    const double product = mean_over(picture.pixels.size(), hit, [&](std::size_t i) {
+        const glm::dvec3 a(picture.pixels[i]);
+        return glm::dot(a - glm::dvec3(reference[0].pixels[i]), a - glm::dvec3(reference[1].pixels[i]));
+    });
+    const double expected = channel_sum(mean_vector(mean, hit));
     return {
         .rel_mse = rel_mse,
-        .rmse = std::sqrt(mean_of([&](std::size_t i) { return square(a(i) - r(i)); })),
-        .bias = ratio(mean_of([&](std::size_t i) { return channel_sum(a(i) - r(i)); }),
-                      channel_sum(mean_vector(reference, hit))),
-        .spikes = ratio(largest_channel(picture, hit), largest_channel(reference, hit)),
+        .rmse = std::sqrt(std::max(product, 0.0)),
+        .bias = ratio(channel_sum(mean_vector(picture, hit)) - expected, expected),
+        .spikes = ratio(largest_channel(picture, hit), largest_channel(mean, hit)),
         .blotch = tools::blotch(picture, reference, hit),
     };
+}
+
+Picture mean_of(const Halves& halves) {
+    Picture mean = halves[0];
+    for (std::size_t i = 0; i < mean.pixels.size(); ++i) {
+        mean.pixels[i] = 0.5F * (halves[0].pixels[i] + halves[1].pixels[i]);
+    }
+    return mean;
 }
 
 std::vector<double> relative_errors(const Picture& picture, const Picture& reference,
@@ -123,12 +138,13 @@ double flicker(std::span<const Picture> frames, std::span<const Picture> referen
     return std::accumulate(pairs.begin(), pairs.end(), 0.0) / static_cast<double>(pairs.size());
 }
 
-std::optional<double> rel_mse_of_blocks(const Picture& picture, const Picture& reference, const Mask& hit) {
-    require_comparable(picture, reference, {});
+std::optional<double> rel_mse_of_blocks(const Picture& picture, const Halves& reference, const Mask& hit) {
+    for (const Picture& half : reference) require_comparable(picture, half, {});
     constexpr int side = 6;
     const tools::Blocks blocks = tools::blocks_of(picture, hit, side);
     if (std::ranges::count(blocks.hit, 1) == 0) return std::nullopt;
-    return tools::relative_mse(blocks.means, tools::blocks_of(reference, hit, side).means, blocks.hit);
+    const auto means = [&](const Picture& half) { return tools::blocks_of(half, hit, side).means; };
+    return tools::relative_mse(blocks.means, {means(reference[0]), means(reference[1])}, blocks.hit);
 }
 
 Picture scaled_down(const Picture& picture, int factor) {

@@ -11,6 +11,7 @@ namespace candela::study {
 
 using tools::counts;
 using tools::first_not_finite;
+using tools::Halves;
 using tools::Mask;
 using tools::require_comparable;
 
@@ -28,6 +29,13 @@ struct Errors {
 /// error of a black picture is 0 and that of any other is infinite. Throws as tools::relative_mse does.
 [[nodiscard]] Errors measure(const tools::Picture& picture, const tools::Picture& reference,
                              std::span<const std::uint8_t> hit = {});
+
+/// The same against the mean of the halves, whose noise is no part of the squares: see tools::Halves.
+[[nodiscard]] Errors measure(const tools::Picture& picture, const Halves& reference,
+                             std::span<const std::uint8_t> hit = {});
+
+/// The reference that the halves are of.
+[[nodiscard]] tools::Picture mean_of(const Halves& halves);
 
 /// √(|a - r|² / (|r|² + 0.01 |m|²)) of each pixel; the mean of its square is the relMSE. 0 for pixels that do
 /// not count. Throws as `measure` does.
@@ -50,10 +58,9 @@ struct Errors {
                              std::span<const Mask> hits = {});
 
 /// The relMSE of the means of blocks of 6 × 6 pixels, taken over the pixels in `hit`. A block counts if half
-/// of its pixels do; none if no block does. Noise of a reference, which is independent from pixel to pixel,
-/// hardly adds to it. `hit` has one element for each pixel. Throws as `measure` does.
-[[nodiscard]] std::optional<double> rel_mse_of_blocks(const tools::Picture& picture,
-                                                      const tools::Picture& reference, const Mask& hit);
+/// of its pixels do; none if no block does. `hit` has one element for each pixel. Throws as `measure` does.
+[[nodiscard]] std::optional<double> rel_mse_of_blocks(const tools::Picture& picture, const Halves& reference,
+                                                      const Mask& hit);
 
 /// The means of blocks of `factor` x `factor` pixels; incomplete blocks at the right and at the bottom are
 /// dropped.

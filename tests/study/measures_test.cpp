@@ -138,11 +138,12 @@ TEST_CASE("blocks are measured by the means of their pixels that count, if these
         hit[pixel] = x < 6 || x >= 10 ? 1 : 0;
     }
     const Picture reference = constant(size, glm::vec3(2.0F));
-    CHECK(rel_mse_of_blocks(picture, reference, hit).value() == about(0.0));
+    const Halves halves{reference, reference};
+    CHECK(rel_mse_of_blocks(picture, halves, hit).value() == about(0.0));
     // With one more column, the block on the right counts: 9 instead of 2, in one of two blocks.
     for (std::size_t row = 0; row < 6; ++row) hit[12 * row + 9] = 1;
-    CHECK(rel_mse_of_blocks(picture, reference, hit).value() == about(0.5 * 49.0 / (4.0 * 1.01)));
-    CHECK_FALSE(rel_mse_of_blocks(picture, reference, Mask(72, 0)));
+    CHECK(rel_mse_of_blocks(picture, halves, hit).value() == about(0.5 * 49.0 / (4.0 * 1.01)));
+    CHECK_FALSE(rel_mse_of_blocks(picture, halves, Mask(72, 0)));
 }
 
 TEST_CASE("a blotch is what a blur leaves of the error, by the pixels that count") {
@@ -168,6 +169,30 @@ TEST_CASE("a blotch is what a blur leaves of the error, by the pixels that count
     Mask left(reference.pixels.size());
     for (std::size_t i = 0; i < left.size(); ++i) left[i] = i % 120 < 60 ? 1 : 0;
     CHECK(measured([](int x, int) { return x < 60 ? 1.5F : 9.0F; }, left).blotch == about(0.25 / 1.01));
+}
+
+TEST_CASE("noise of a reference's halves is no error") {
+    // The picture is 0.1 too bright; the halves have noise with a variance of 0.2² / 12.
+    const glm::ivec2 size{240, 160};
+    const Picture picture = constant(size, glm::vec3(2.6F));
+    Halves halves{noise(size, 1), noise(size, 2)};
+    for (Picture& half : halves) {
+        for (glm::vec3& pixel : half.pixels) pixel = 2.4F + 0.2F * pixel;
+    }
+    const double square = 2.5 * 2.5 * 1.01;
+    const double expected = 0.1 * 0.1 / square;
+    const Errors errors = measure(picture, halves);
+    // (0.1 - noise) (0.1 - noise') has a standard deviation of 0.009, its mean over 240 · 160 · 3 of 0.00003:
+    // four of them.
+    const double rounding = 4.0 * 0.00003 / square;
+    CHECK(errors.rel_mse == doctest::Approx(expected).epsilon(rounding));
+    CHECK(errors.blotch == doctest::Approx(expected).epsilon(rounding));
+    CHECK(errors.rmse == doctest::Approx(0.1 * std::sqrt(3.0)).epsilon(0.001));
+    CHECK(errors.bias == doctest::Approx(0.04).epsilon(0.0001));
+    // Against the mean of the halves, half of the variance of their noise is added.
+    const double noise_of_mean = 0.5 * 0.2 * 0.2 / 12.0 / square;
+    CHECK(measure(picture, mean_of(halves)).rel_mse ==
+          doctest::Approx(expected + noise_of_mean).epsilon(2.0 * rounding));
 }
 
 TEST_CASE("the mean square of the relative errors is the relMSE") {
@@ -198,7 +223,7 @@ TEST_CASE("pictures that cannot be compared are refused") {
     CHECK_THROWS_WITH_AS((void)measure(picture, picture, Mask(11, 1)), "a mask of 11 pixels does not fit 4x3",
                          tools::ToolError);
     CHECK_THROWS_WITH_AS((void)measure(picture, picture, Mask(12, 0)), "no pixel counts", tools::ToolError);
-    CHECK_THROWS_WITH_AS((void)measure({}, {}), "no pixel counts", tools::ToolError);
+    CHECK_THROWS_WITH_AS((void)measure(Picture(), Picture()), "no pixel counts", tools::ToolError);
     for (const float value :
          {std::numeric_limits<float>::quiet_NaN(), std::numeric_limits<float>::infinity()}) {
         Picture bad = picture;

@@ -30,7 +30,7 @@ class Study:
         self.journal = out / "journal.jsonl"
         self.records = journal.fold(journal.read(self.journal))
         self.machine = machine.machine()
-        self.tracer = machine.sources_hash(scenes.ROOT / "sandbox" / "reference")
+        self.tracer = machine.sources_hash(scenes.ROOT / "renderer" / "tools" / "reference")
         self.program = machine.file_hash(STUDY)
 
     def scene(self, group: Group) -> pathlib.Path:

@@ -1,5 +1,6 @@
 #pragma once
 
+#include <array>
 #include <cstddef>
 #include <cstdint>
 #include <optional>
@@ -31,10 +32,22 @@ using Mask = std::vector<std::uint8_t>;
 [[nodiscard]] CANDELA_API double relative_mse(const Picture& picture, const Picture& reference,
                                               std::span<const std::uint8_t> hit = {});
 
+/// Two estimates of a reference whose noise is independent, as that of reference::Estimate::halves. Their
+/// mean is the reference r.
+using Halves = std::array<Picture, 2>;
+
+/// The relMSE without the noise of the reference: (a - p) · (a - q) stands for |a - r|², where p and q are
+/// the halves, as the expected product of independent noise is 0. An error below that noise may come out
+/// negative.
+[[nodiscard]] CANDELA_API double relative_mse(const Picture& picture, const Halves& reference,
+                                              std::span<const std::uint8_t> hit = {});
+
 /// The relMSE of both pictures after a blur: of what an eye sees as blotches, beams and leaks, while noise
 /// and edges hardly count. The blur is Gaussian, with a standard deviation of 1/120 of the width, and takes
 /// pixels in `hit` only. Throws as `relative_mse` does.
 [[nodiscard]] CANDELA_API double blotch(const Picture& picture, const Picture& reference,
+                                        std::span<const std::uint8_t> hit = {});
+[[nodiscard]] CANDELA_API double blotch(const Picture& picture, const Halves& reference,
                                         std::span<const std::uint8_t> hit = {});
 
 /// A picture of fewer pixels, for measures of what is larger than a pixel.
