@@ -4,11 +4,14 @@
 #include "bindings.glsl"
 #include "loop_part.glsl"
 #include "surfaces/visible_surface.glsl"
+// Surfels in the order of the buffer: neighbours have adjacent indices and so are summed by different pixels.
+#ifndef SURFELS
+#define VPL_ORDER
+#endif
 #include "indirect/vpl_light.glsl"
 
 layout(local_size_x = FILL_GROUP) in;
 
-layout(std430, binding = BINDING_VPL_ORDER) readonly restrict buffer VplOrder { uint vpl_order[]; };
 layout(std430, binding = BINDING_FILL_LIST) readonly restrict buffer FillList {
     uint fill_groups[3];
     uint fill_count;
@@ -33,14 +36,7 @@ void main() {
     // The four pixels of 2 × 2 sum different quarters, or halves as on a chessboard: no stripes are seen.
     uint offset = uint(2 * ((at.x ^ at.y) & 1) + (at.y & 1)) * one_in / 4u;
     uint end = min(vpl_constants.count, one_in * (part_first + part_size));
-    for (uint i = one_in * part_first + offset; i < end; i += one_in) {
-#ifdef SURFELS
-        // In the order of the buffer: neighbouring surfels have adjacent indices and so are summed by different pixels.
-        add_vpl(i, surfaces, gathered);
-#else
-        add_vpl(vpl_order[i], surfaces, gathered);
-#endif
-    }
+    add_vpls(vpl_list(one_in * part_first + offset, one_in, end), surfaces, gathered);
     vec4 found = imageLoad(reconstructed, at);
     float weight = 1.0 / (found.a + 1.0 / float(one_in));  // the sum over a half is half of the estimate
     float kept = part_first == 0u ? found.a * weight : 1.0;

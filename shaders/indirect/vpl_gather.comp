@@ -5,10 +5,9 @@
 #include "loop_part.glsl"
 #include "shading/pixel_block.glsl"
 #include "surfaces/visible_surface.glsl"
+#define VPL_ORDER
 #include "indirect/vpl_light.glsl"
 #include "indirect/vpl_shares.glsl"
-
-layout(std430, binding = BINDING_VPL_ORDER) readonly restrict buffer VplOrder { uint vpl_order[]; };
 
 layout(rgba32f, binding = IMAGE_INDIRECT) restrict uniform image2D gathered_irradiance;
 #ifdef DIRECTED
@@ -31,8 +30,8 @@ void main() {
     uint classes = interleave * interleave;
     uint share = share_of_class(offset);
     uint first = share * vpl_constants.count / classes + part_first;
-    uint last = nearest > 0.0 ? min((share + 1u) * vpl_constants.count / classes, first + part_size) : first;
-    for (uint i = first; i < last; ++i) add_vpl(vpl_order[i], surfaces, gathered);
+    uint last = min((share + 1u) * vpl_constants.count / classes, first + part_size);
+    if (nearest > 0.0) add_vpls(vpl_list(first, 1u, last), surfaces, gathered);
     // Multiplied by the number of classes: the estimate for all VPLs. OpenGL discards stores outside the image.
     for (int s = 0; s < SURFACES; ++s) {
         ivec2 at = int(interleave) * block_pixel(s) + ivec2(offset);

@@ -1,6 +1,7 @@
-// Light that virtual point lights (VPLs) send to surfaces. The entry is add_vpl. An invocation has SURFACES surfaces.
+// Light that virtual point lights (VPLs) send to surfaces. The entry is add_vpls. An invocation has SURFACES surfaces.
 #include "bindings.glsl"
 #include "indirect/gathered.glsl"
+#include "indirect/vpl_list.glsl"
 #include "maths.glsl"
 #include "vpls/disc.glsl"
 #include "sky/sky_patch.glsl"
@@ -58,13 +59,18 @@ vec3 irradiance_from_traced(uint index, TracedVpl vpl, VplPose pose, Surface sur
 
 // Adds π times the irradiance from the VPL of that index. Loops over the surfaces inside, so that it is fetched, and the
 // frame of its map made, once.
-void add_vpl(uint index, Surface surfaces[SURFACES], inout Gathered gathered[SURFACES]) {
+void add_traced(uint index, Surface surfaces[SURFACES], inout Gathered gathered[SURFACES]) {
     TracedVpl vpl = traced_vpl_at(index);
     VplPose pose = vpl_pose(vpl.position, vpl.normal, index);
     for (int s = 0; s < SURFACES; ++s) {
         vec3 irradiance = irradiance_from_traced(index, vpl, pose, surfaces[s]);
         add_gathered(gathered[s], irradiance, vpl.position - surfaces[s].position, surfaces[s]);
     }
+}
+
+// Adds π times the irradiance from the VPLs in the list.
+void add_vpls(VplList list, Surface surfaces[SURFACES], inout Gathered gathered[SURFACES]) {
+    for (; list.vpl != NO_VPL; advance(list)) add_traced(list.vpl, surfaces, gathered);
 }
 
 #else
@@ -122,8 +128,9 @@ vec3 irradiance_from_surfel(LitSurfel surfel, VplPose pose, Surface surface) {
     return unoccluded * visibility_of_vpl(surfel.map, pose, surface);
 }
 
-// Adds that light. Loops over the surfaces inside, so that the frame of its map is made once.
-void add_surfel(LitSurfel surfel, Surface surfaces[SURFACES], inout Gathered gathered[SURFACES]) {
+// Adds that light. Loops over the surfaces inside, so that the surfel is fetched, and the frame of its map made, once.
+void add_surfel(uint index, Surface surfaces[SURFACES], inout Gathered gathered[SURFACES]) {
+    LitSurfel surfel = lit_surfel_at(index);
     VplPose pose = vpl_pose(surfel.position, surfel.normal, surfel.map);
     for (int s = 0; s < SURFACES; ++s) {
         vec3 irradiance = irradiance_from_surfel(surfel, pose, surfaces[s]);
@@ -161,17 +168,39 @@ vec3 irradiance_from_emitter(LitEmitter emitter, Surface surface) {
     return sum * visibility_of_emitter(emitter, lit_point_at(brightest), surface);
 }
 
+void add_emitter(uint index, Surface surfaces[SURFACES], inout Gathered gathered[SURFACES]) {
+    LitEmitter emitter = lit_emitters[index];
+    for (int s = 0; s < SURFACES; ++s) {
+        vec3 irradiance = irradiance_from_emitter(emitter, surfaces[s]);
+        add_gathered(gathered[s], irradiance, emitter.position - surfaces[s].position, surfaces[s]);
+    }
+}
+
+#else
+
+void add_emitter(uint index, Surface surfaces[SURFACES], inout Gathered gathered[SURFACES]) {}
+
 #endif
 
 #ifdef SKY
 
-// Adds π times the irradiance from a patch of the sky.
-void add_patch(inout Gathered gathered, SkyPatch sky_patch, Surface surface) {
-    PatchLight light = light_of_patch(sky_patch, face_normal(surface));
-    if (light.cosine <= 0.0) return;
-    vec3 irradiance = sky_patch.light * (light.cosine * visibility_of_sky(light.direction, surface));
-    add_gathered(gathered, irradiance, light.direction, surface);
+// π times the irradiance from a patch of the sky.
+vec3 irradiance_from_patch(vec3 radiance, PatchLight light, Surface surface) {
+    if (light.cosine <= 0.0) return vec3(0.0);
+    return radiance * (light.cosine * visibility_of_sky(light.direction, surface));
 }
+
+void add_patch(uint index, Surface surfaces[SURFACES], inout Gathered gathered[SURFACES]) {
+    SkyPatch sky_patch = sky_patches[index];
+    for (int s = 0; s < SURFACES; ++s) {
+        PatchLight light = light_of_patch(sky_patch, face_normal(surfaces[s]));
+        add_gathered(gathered[s], irradiance_from_patch(sky_patch.light, light, surfaces[s]), light.direction, surfaces[s]);
+    }
+}
+
+#else
+
+void add_patch(uint index, Surface surfaces[SURFACES], inout Gathered gathered[SURFACES]) {}
 
 #endif
 
@@ -179,48 +208,46 @@ void add_patch(inout Gathered gathered, SkyPatch sky_patch, Surface surface) {
 
 #include "sampling.glsl"
 
-// Adds π times the irradiance from a direction, if a surface is there: README.md, "Shared items". The directions are those
+// π times the irradiance from a direction, if a surface is there: README.md, "Shared items". The directions are those
 // that follow the cosine. In this order the even ones (vpl_fill.comp), and the share of each class of pixels, are spread
 // over the hemisphere.
-void add_direction(inout Gathered gathered, uint direction, Surface surface) {
-    uint place = direction / 2u + direction % 2u * (COVER_DIRECTIONS / 2u);
-    vec3 towards = cosine_direction(face_normal(surface), sample_2d(place, 0u, 0u));
+vec3 irradiance_from_direction(vec3 towards, Surface surface) {
     vec3 origin = ray_origin(surface, vpl_constants.ray_offset);
-    if (!is_surface(closest_hit(origin, towards, 0.0, INFINITY), towards)) return;
-    vec3 irradiance = PI / float(COVER_DIRECTIONS) * lit_surfel_at(vpl_constants.mean_record).flux;
-    add_gathered(gathered, irradiance, towards, surface);
+    if (!is_surface(closest_hit(origin, towards, 0.0, INFINITY), towards)) return vec3(0.0);
+    return PI / float(COVER_DIRECTIONS) * lit_surfel_at(vpl_constants.mean_record).flux;
 }
 
+void add_direction(uint index, Surface surfaces[SURFACES], inout Gathered gathered[SURFACES]) {
+    uint place = index / 2u + index % 2u * (COVER_DIRECTIONS / 2u);
+    for (int s = 0; s < SURFACES; ++s) {
+        vec3 towards = cosine_direction(face_normal(surfaces[s]), sample_2d(place, 0u, 0u));
+        add_gathered(gathered[s], irradiance_from_direction(towards, surfaces[s]), towards, surfaces[s]);
+    }
+}
+
+#else
+
+void add_direction(uint index, Surface surfaces[SURFACES], inout Gathered gathered[SURFACES]) {}
+
 #endif
 
-// Adds π times the irradiance from the VPL of that index: the kinds follow one another. Kinds whose light is not shown send
-// none. Loops over the surfaces inside, so that the VPL is fetched, and the frame of its map made, once.
-void add_vpl(uint index, Surface surfaces[SURFACES], inout Gathered gathered[SURFACES]) {
-    if (index < vpl_constants.first_emitter) {
-        add_surfel(lit_surfel_at(index), surfaces, gathered);
-        return;
-    }
-#ifdef BALANCED
-    if (index >= vpl_constants.first_direction) {
-        uint direction = index - vpl_constants.first_direction;
-        for (int s = 0; s < SURFACES; ++s) add_direction(gathered[s], direction, surfaces[s]);
-        return;
-    }
-#endif
-#ifdef EMITTERS
-    if (index < vpl_constants.first_sky_patch) {
-        LitEmitter emitter = lit_emitters[index - vpl_constants.first_emitter];
-        for (int s = 0; s < SURFACES; ++s) {
-            vec3 irradiance = irradiance_from_emitter(emitter, surfaces[s]);
-            add_gathered(gathered[s], irradiance, emitter.position - surfaces[s].position, surfaces[s]);
+bool is_between(uint vpl, uint first, uint end) { return vpl >= first && vpl < end; }
+
+// Adds π times the irradiance from the VPLs in the list. In it, kinds follow one another, or do so a few times. Each kind
+// has a loop of its own, since software drivers run through branches that they do not take.
+void add_vpls(VplList list, Surface surfaces[SURFACES], inout Gathered gathered[SURFACES]) {
+    while (list.vpl != NO_VPL) {
+        for (; list.vpl < vpl_constants.first_emitter; advance(list)) add_surfel(list.vpl, surfaces, gathered);
+        for (; is_between(list.vpl, vpl_constants.first_emitter, vpl_constants.first_sky_patch); advance(list)) {
+            add_emitter(list.vpl - vpl_constants.first_emitter, surfaces, gathered);
         }
-        return;
+        for (; is_between(list.vpl, vpl_constants.first_sky_patch, vpl_constants.first_direction); advance(list)) {
+            add_patch(list.vpl - vpl_constants.first_sky_patch, surfaces, gathered);
+        }
+        for (; is_between(list.vpl, vpl_constants.first_direction, NO_VPL); advance(list)) {
+            add_direction(list.vpl - vpl_constants.first_direction, surfaces, gathered);
+        }
     }
-#endif
-#ifdef SKY
-    SkyPatch sky_patch = sky_patches[index - vpl_constants.first_sky_patch];
-    for (int s = 0; s < SURFACES; ++s) add_patch(gathered[s], sky_patch, surfaces[s]);
-#endif
 }
 
 #endif

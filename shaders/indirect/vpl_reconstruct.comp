@@ -1,5 +1,5 @@
 // Reconstructs the irradiance from all VPLs out of the gathered estimates, each of which covers one class's share:
-// first along rows, then (COLUMNS) along columns of that result. Along a line the classes repeat every `interleave`
+// first along rows, then along columns of that result. Along a line the classes repeat every `interleave`
 // pixels. Each class counts once, interpolated linearly between its two nearest pixels, as far as they lie on the same
 // surface as the pixel. Alpha: the share of the classes that were found. See README.md, "Interpolation between
 // classes". One invocation per pixel.
@@ -9,13 +9,10 @@
 
 layout(local_size_x = RECONSTRUCT_GROUP) in;
 
-#ifdef COLUMNS
-const ivec2 along = ivec2(0, 1);
-#else
-const ivec2 along = ivec2(1, 0);
-#endif
-
 uniform uint interleave;
+uniform bool columns;
+
+ivec2 along = columns ? ivec2(0, 1) : ivec2(1, 0);
 
 layout(binding = UNIT_INDIRECT) uniform sampler2D gathered;
 layout(rgba32f, binding = IMAGE_INDIRECT) writeonly restrict uniform image2D reconstructed;
@@ -128,9 +125,7 @@ vec4 mean_irradiance(Sum sum) {
     return vec4(sum.irradiance.rgb / max(sum.irradiance.a, 1e-6), sum.irradiance.a / float(interleave));
 }
 
-#ifdef COLUMNS
-
-// One bit a pixel, 32 a word: 1 if vpl_fill.comp is to gather VPLs for it.
+// Of columns. One bit a pixel, 32 a word: 1 if vpl_fill.comp is to gather VPLs for it.
 layout(std430, binding = BINDING_FILL_MASK) writeonly restrict buffer Mask { uint fill_mask[]; };
 
 const float ENOUGH = 0.6;  // share of the classes; with less, vpl_fill.comp gathers VPLs for the pixel
@@ -150,8 +145,6 @@ void mark_for_fill(bool needs_fill) {
     if (first) fill_mask[group * (RECONSTRUCT_GROUP / 32) + word] = group_mask[word];
 }
 
-#endif
-
 void main() {
     ivec2 at = ivec2(gl_GlobalInvocationID.xy);
     bool is_surface = at.x < int(view.target_size.x) && texelFetch(surface_depth, at, 0).r > 0.0;
@@ -162,7 +155,5 @@ void main() {
 #ifdef DIRECTED
     imageStore(reconstructed_flow, at, sum.flow / max(sum.irradiance.a, 1e-6));
 #endif
-#ifdef COLUMNS
-    mark_for_fill(is_surface && result.a < ENOUGH);
-#endif
+    if (columns) mark_for_fill(is_surface && result.a < ENOUGH);
 }

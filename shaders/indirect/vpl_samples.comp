@@ -18,7 +18,7 @@ void main() {
     surfaces[0] = visible_surface(at, depth, vec3(0.0));
     gathered[0] = nothing_gathered();
     uint end = depth > 0.0 ? min(vpl_constants.count, part_first + part_size) : 0u;
-    for (uint i = part_first; i < end; ++i) add_vpl(i, surfaces, gathered);
+    add_vpls(vpl_list(part_first, 1u, end), surfaces, gathered);
     uint id = gl_GlobalInvocationID.x;
     vec3 before = part_first > 0u ? samples[id].rgb : vec3(0.0);
     samples[id] = vec4(before + gathered[0].irradiance, depth > 0.0 ? 1.0 : 0.0);

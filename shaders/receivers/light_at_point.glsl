@@ -55,7 +55,7 @@ vec3 irradiance_from_vpls(uint first, uint end, uint stride, Surface surface) {
     Gathered gathered[SURFACES];
     surfaces[0] = surface;
     gathered[0] = nothing_gathered();
-    for (uint i = first; i < min(end, vpl_constants.count); i += stride) add_vpl(i, surfaces, gathered);
+    add_vpls(vpl_list(first, stride, min(end, vpl_constants.count)), surfaces, gathered);
     return gathered[0].irradiance / PI;
 }
 

@@ -138,9 +138,7 @@ void add_indirect(Surface surfaces[SURFACES], uvec2 pixels[SURFACES], inout Refl
     for (int s = 0; s < SURFACES; ++s) gathered[s] = nothing_gathered();
     uint count = vpl_constants.count;
     uint vpl_stride = count <= uint(MOST_VPLS) ? 1u : (count + uint(MOST_VPLS) - 1u) / uint(MOST_VPLS) | 1u;
-    for (uint i = (pixels[0].x + 5u * pixels[0].y) % vpl_stride; i < count; i += vpl_stride) {
-        add_vpl(i, surfaces, gathered);
-    }
+    add_vpls(vpl_list((pixels[0].x + 5u * pixels[0].y) % vpl_stride, vpl_stride, count), surfaces, gathered);
     for (int s = 0; s < SURFACES; ++s) add_gathered_light(reflected[s], gathered[s], float(vpl_stride), surfaces[s]);
 }
 

@@ -1,6 +1,6 @@
 // How much an error in the light of each surfel is seen. The flux of its cell is carried along the form factors to those
 // that are seen, each time relative to the light that arrives there; the squares add up: README.md, "Guide". First
-// (SEEN) one invocation for each cell that may be seen, then one for each that sends light.
+// (`receives`) one invocation for each cell that may be seen, then one for each that sends light.
 #include "surfels/surfel.glsl"
 
 layout(local_size_x = SURFEL_GROUP) in;
@@ -11,18 +11,17 @@ layout(std430, binding = BINDING_LIT_SURFELS) readonly restrict buffer LitSurfel
 // By surfel: number of rays from the eyes that meet its cell; after the first step, the root of that over the irradiance
 // there.
 layout(std430, binding = BINDING_SEEN_SURFELS) restrict buffer Seen { float seen[]; };
+layout(std430, binding = BINDING_GUIDE) writeonly restrict buffer Guide { float shares[]; };  // by surfel, in any unit
 
 uniform uint sending_count;  // surfels that send light: the first ones
+uniform bool receives;
 
 float factor(uint row, uint column) {
     vec2 factors = unpackHalf2x16(form_factors[form_factors_at(row, column / 2u)]);
     return rows[row].x * rows[column].x * factors[column % 2u];
 }
 
-#ifdef SEEN
-
-void main() {
-    uint id = gl_GlobalInvocationID.x;
+void receive(uint id) {
     if (id >= surfel_count || seen[id] == 0.0) return;
     float irradiance = 0.0;
     for (uint i = 0u; i < sending_count; ++i) {
@@ -32,12 +31,7 @@ void main() {
     seen[id] = irradiance > 0.0 ? sqrt(seen[id]) / irradiance : 0.0;
 }
 
-#else
-
-layout(std430, binding = BINDING_GUIDE) writeonly restrict buffer Guide { float shares[]; };  // by surfel, in any unit
-
-void main() {
-    uint id = gl_GlobalInvocationID.x;
+void send(uint id) {
     if (id >= sending_count) return;
     float squares = 0.0;
     for (uint i = 0u; i < surfel_count; ++i) {
@@ -49,4 +43,10 @@ void main() {
     shares[id] = own.area > 0.0 ? sqrt(squares) * dot(own.flux, vec3(1.0)) / own.area : 0.0;
 }
 
-#endif
+void main() {
+    if (receives) {
+        receive(gl_GlobalInvocationID.x);
+    } else {
+        send(gl_GlobalInvocationID.x);
+    }
+}

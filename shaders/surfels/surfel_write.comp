@@ -1,7 +1,7 @@
 // Turns surfels into VPLs: each has the total flux that its cell emits and reflects, and the position and width of the
-// part of the cell that it comes from. Also writes the flux of each cell point. With EMITTERS, the last surfels are on
-// surfaces that emit light. With BALANCED, surfels that stand for several items have the light of their own one only, and
-// all have only what is more than the mean of the others: README.md, "Shared items". One invocation per surfel.
+// part of the cell that it comes from. Also writes the flux of each cell point. The last surfels are on surfaces that emit
+// light. If `balanced`, surfels that stand for several items have the light of their own one only, and all have only what
+// is more than the mean of the others: README.md, "Shared items". One invocation per surfel.
 #include "surfels/surfel.glsl"
 
 layout(local_size_x = SURFEL_GROUP) in;
@@ -11,11 +11,14 @@ layout(std430, binding = BINDING_LIT_SURFELS) restrict buffer LitSurfels { LitSu
 layout(std430, binding = BINDING_DIRECT_POINTS) readonly restrict buffer DirectPoints { DirectPoint direct_points[]; };
 layout(std430, binding = BINDING_CELL_POINTS) readonly restrict buffer Points { CellPoint cell_points[]; };
 layout(std430, binding = BINDING_LIT_POINTS) writeonly restrict buffer LitPoints { LitPoint lit_points[]; };
+layout(std430, binding = BINDING_LIT_EMITTERS) writeonly restrict buffer LitEmitters { LitEmitter lit_emitters[]; };
 layout(std430, binding = BINDING_CELL_LIGHT) readonly restrict buffer Cells { CellLight cells[]; };
 
 uniform float emitted_share;    // 1 if the VPLs show the light that surfaces emit, else 0
 uniform float reflected_share;  // and the light that they reflect
 uniform uint emitting_count;    // surfels that emit light
+uniform bool balanced;
+uniform uint mean_record;  // of surfel_mean.comp
 
 // What of a cell is shown.
 struct Shown {
@@ -52,30 +55,14 @@ LitSurfel lit_surfel(Surfel surfel, CellLight cell, vec3 spread, vec3 flux) {
                      surfel.area, surfel.width2, surfel.map, 0.0, 0.0);
 }
 
-#ifdef EMITTERS
-
-layout(std430, binding = BINDING_LIT_EMITTERS) writeonly restrict buffer LitEmitters { LitEmitter lit_emitters[]; };
-
 LitEmitter lit_emitter(Surfel surfel, vec3 flux) {
     return LitEmitter(surfel.position, surfel.first_point, surfel.normal, surfel.point_count, flux, surfel.area);
 }
 
-#endif
-
-#ifdef BALANCED
-
-uniform uint mean_record;  // of surfel_mean.comp
-
 Shown shown_of(uint id) {
-    if (id >= surfel_count - emitting_count) return Shown(1.0, vec3(0.0));
+    if (!balanced || id >= surfel_count - emitting_count) return Shown(1.0, vec3(0.0));
     return Shown(surfels[id].own, lit_surfels[mean_record].flux);
 }
-
-#else
-
-Shown shown_of(uint id) { return Shown(1.0, vec3(0.0)); }
-
-#endif
 
 void main() {
     uint id = gl_GlobalInvocationID.x;
@@ -86,13 +73,11 @@ void main() {
     write_points(surfel, cell.indirect, shown);
     vec3 spread = cell.area * cell.albedo * cell.indirect;
     vec3 flux = emitted_share * cell.emitted + reflected_share * (cell.direct - cell.emitted + spread);
-#ifdef EMITTERS
     uint first_emitter = surfel_count - emitting_count;
     if (id >= first_emitter) {
         lit_emitters[id - first_emitter] = lit_emitter(surfel, flux);
         return;
     }
-#endif
     surfel.area *= shown.own;
     surfel.width2 *= shown.own;
     cell.radius2 *= shown.own;

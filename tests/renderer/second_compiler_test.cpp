@@ -252,7 +252,6 @@ TEST_CASE_FIXTURE(GlFixture, "glslang compiles every variant of every program") 
                                                                      {"BUMPY", "MASKED"},
                                                                      {"BUMPY", "GLOSSY"},
                                                                      {"BUMPY", "DIRECTED"},
-                                                                     {"DIRECTED", "COLUMNS"},
                                                                      {"DIRECTED", "GLOSSY"},
                                                                      {"MIRRORED"},
                                                                      {"EMITTERS", "EMISSION", "SKY"},

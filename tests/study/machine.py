@@ -54,14 +54,3 @@ def provenance(program: pathlib.Path) -> dict[str, Any]:
 
 def file_hash(path: pathlib.Path) -> str:
     return hashlib.sha256(path.read_bytes()).hexdigest()[:16]
-
-
-def sources_hash(folder: pathlib.Path) -> str:
-    """The hash of the C++ files in a folder."""
-    digest = hashlib.sha256()
-    files = sorted(folder.glob("*.[ch]pp"))
-    if not files:
-        raise FileNotFoundError(f"{folder}: has no C++ files")
-    for path in files:
-        digest.update(path.read_bytes())
-    return digest.hexdigest()[:16]

@@ -30,7 +30,6 @@ class Study:
         self.journal = out / "journal.jsonl"
         self.records = journal.fold(journal.read(self.journal))
         self.machine = machine.machine()
-        self.tracer = machine.sources_hash(scenes.ROOT / "renderer" / "tools" / "reference")
         self.program = machine.file_hash(STUDY)
 
     def scene(self, group: Group) -> pathlib.Path:
@@ -51,8 +50,8 @@ class Study:
         return {**keys, "tracer": matrix.key_of(group, samples, circumstances)}
 
     def reference(self, group: Group) -> pathlib.Path:
-        """The folder of the group's reference; its name is a hash of everything that the reference depends on."""
-        request = {**vars(group.reference), "size": group.size, "tracer": self.tracer}
+        """The folder of the group's reference; its name is a hash of what is asked of the path tracer."""
+        request = {**vars(group.reference), "size": group.size}
         name = matrix.digest({**request, "scene": scenes.content_hash(self.scene(group))})
         return BUILD / "study" / "references" / name
 
@@ -87,7 +86,7 @@ class Study:
 
     def frame_references(self, played: Motion) -> pathlib.Path:
         """The folder of the frames' references, whose names within it are hashes of what they show."""
-        request = {**vars(played.reference), "size": played.size, "tracer": self.tracer}
+        request = {**vars(played.reference), "size": played.size}
         return BUILD / "study" / "references" / f"frames-{matrix.digest(request)}"
 
     def note(self, line: dict[str, Any]) -> None:

@@ -26,9 +26,15 @@ std::uint32_t groups_of_row(glm::uvec2 size) {
     return groups(size.x, RECONSTRUCT_GROUP);
 }
 
-void reconstruct(const Gpu& gpu, const gl::Program& program, const Pixels& pixels) {
+/// The program of both steps. `before` is what it reads.
+const gl::Program& program_of(Gpu& gpu, const Pixels& pixels, const GatheredLight& before) {
+    return gpu.program({"indirect/vpl_reconstruct.comp"},
+                       gathered_variant(before, surface_variant(pixels.surfaces)));
+}
+
+void reconstruct(const Gpu& gpu, const gl::Program& program, const Pixels& pixels, bool columns) {
     ComputeSteps(gpu).run(program, {groups_of_row(pixels.size), pixels.size.y},
-                          {{"interleave", pixels.interleave}});
+                          {{"interleave", pixels.interleave}, {"columns", columns}});
 }
 
 GatheredLight add_rows(FrameGraph& graph, Gpu& gpu, const Pixels& pixels, const GatheredLight& gathered) {
@@ -36,10 +42,9 @@ GatheredLight add_rows(FrameGraph& graph, Gpu& gpu, const Pixels& pixels, const 
         pass.note(Workload::pixels);
         read_pixels(pass, pixels);
         read_gathered(pass, gathered);
-        const gl::Program& program = gpu.program(
-            {"indirect/vpl_reconstruct.comp"}, gathered_variant(gathered, surface_variant(pixels.surfaces)));
+        const gl::Program& program = program_of(gpu, pixels, gathered);
         const GatheredLight out = write_gathered(graph, pass, "row", pixels.size, gathered.flow.has_value());
-        pass.run([=, &gpu, &program](Execution&) { reconstruct(gpu, program, pixels); });
+        pass.run([=, &gpu, &program](Execution&) { reconstruct(gpu, program, pixels, false); });
         return out;
     });
 }
@@ -59,15 +64,13 @@ Columns add_columns(FrameGraph& graph, Gpu& gpu, const Pixels& pixels, const Gat
         pass.note(Workload::pixels);
         read_pixels(pass, pixels);
         read_gathered(pass, rows);
-        const gl::Program& program =
-            gpu.program({"indirect/vpl_reconstruct.comp"},
-                        gathered_variant(rows, surface_variant(pixels.surfaces, {"COLUMNS"})));
+        const gl::Program& program = program_of(gpu, pixels, rows);
         const Columns out{
             .light = write_gathered(graph, pass, "indirect", pixels.size, rows.flow.has_value()),
             .fill_mask = pass.write(graph.buffer<std::uint32_t>(
                                         "fill mask", std::uint64_t{row_words(pixels.size)} * pixels.size.y),
                                     {Usage::storage, BINDING_FILL_MASK})};
-        pass.run([=, &gpu, &program](Execution&) { reconstruct(gpu, program, pixels); });
+        pass.run([=, &gpu, &program](Execution&) { reconstruct(gpu, program, pixels, true); });
         return out;
     });
 }

@@ -25,8 +25,7 @@ struct GuideNode {
     BufferHandle<float> seen;    // by surfel
     BufferHandle<float> shares;  // by surfel
     ValueHandle<SurfelGuide> out;
-    const gl::Program& receive;
-    const gl::Program& send;
+    const gl::Program& program;
 };
 
 /// The surfel whose cell a surface is most likely in. Of two that are as far away, the one that faces the
@@ -63,8 +62,10 @@ std::vector<float> shares_of(const Gpu& gpu, Execution& run, const GuideNode& no
     const gl::Uniforms uniforms =
         count_uniforms(counts.all_surfels()) + gl::Uniforms{{"sending_count", counts.surfels}};
     ComputeSteps steps(gpu);
-    steps.run(node.receive, {groups(counts.all_surfels(), SURFEL_GROUP)}, uniforms);
-    steps.run(node.send, {groups(counts.surfels, SURFEL_GROUP)}, uniforms);
+    steps.run(node.program, {groups(counts.all_surfels(), SURFEL_GROUP)},
+              uniforms + gl::Uniforms{{"receives", true}});
+    steps.run(node.program, {groups(counts.surfels, SURFEL_GROUP)},
+              uniforms + gl::Uniforms{{"receives", false}});
     std::vector<float> shares(counts.surfels);
     gpu.gl().MemoryBarrier(GL_BUFFER_UPDATE_BARRIER_BIT);
     gpu.gl().GetNamedBufferSubData(run.object(node.shares), 0,
@@ -117,8 +118,7 @@ ValueHandle<SurfelGuide> add_surfel_guide(FrameGraph& graph, Gpu& gpu, const Sce
                              .shares = pass.write(growing_buffer<float>(graph, "shares of the picture"),
                                                   {Usage::storage, BINDING_GUIDE}),
                              .out = pass.write(graph.value<SurfelGuide>("surfel guide")),
-                             .receive = gpu.program({"surfels/surfel_guide.comp"}, {"SEEN"}),
-                             .send = gpu.program({"surfels/surfel_guide.comp"})};
+                             .program = gpu.program({"surfels/surfel_guide.comp"})};
         pass.run([=, &gpu](Execution& run) { find_guide(gpu, run, node); });
         return node.out;
     });

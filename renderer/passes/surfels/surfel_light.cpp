@@ -105,14 +105,14 @@ void gather_at_once(ComputeSteps& steps, const BouncePrograms& programs, std::ui
                                                    {"solves", bounces == all_bounces}});
 }
 
-BouncePrograms bounce_programs(Gpu& gpu, const std::vector<std::string>& writer_variant) {
+BouncePrograms bounce_programs(Gpu& gpu) {
     const bool at_once = !gpu.device().limits().software;
     std::vector<std::string> first{"FIRST"};
     if (at_once) first.emplace_back("SLICED");
     return {.first = gpu.program({"surfels/surfel_bounce.comp"}, first),
             .further = at_once ? nullptr : &gpu.program({"surfels/surfel_bounce.comp"}),
             .account = gpu.program({at_once ? "surfels/surfel_bounces.comp" : "surfels/surfel_account.comp"}),
-            .writer = gpu.program({"surfels/surfel_write.comp"}, writer_variant)};
+            .writer = gpu.program({"surfels/surfel_write.comp"})};
 }
 
 /// Light is evaluated at the cells' points only. A spot that is narrower than they are apart, even where it
@@ -217,14 +217,6 @@ BufferHandle<gpu::DirectPoint> add_direct_light(FrameGraph& graph, Gpu& gpu, con
     });
 }
 
-/// Names to define in surfel_write.comp.
-std::vector<std::string> writer_variant(const SurfelSources& sources) {
-    std::vector<std::string> words;
-    if (sources.emitters) words.emplace_back("EMITTERS");
-    if (sources.balanced) words.emplace_back("BALANCED");
-    return words;
-}
-
 /// The step that finds the mean light of items without surfels.
 struct MeanStep {
     const gl::Program* program = nullptr;  // null: all items have some
@@ -276,7 +268,7 @@ Vpls add_surfel_light(FrameGraph& graph, Gpu& gpu, const Tracing& tracing, const
         if (sources.sky) pass.read(sources.sky->count);
         pass.parameter(bounces);
         pass.parameter(shown);
-        const BouncePrograms programs = bounce_programs(gpu, writer_variant(sources));
+        const BouncePrograms programs = bounce_programs(gpu);
         const MeanStep mean_step{sources.balanced ? &gpu.program({"surfels/surfel_mean.comp"}) : nullptr};
         const gl::Program& adder = gpu.program({"surfels/surfel_cells.comp"});
         const auto cells = pass.write(growing_buffer<gpu::CellLight>(graph, "lit cells"),
@@ -312,7 +304,9 @@ Vpls add_surfel_light(FrameGraph& graph, Gpu& gpu, const Tracing& tracing, const
             mean_step.run(steps, counts, shown);
             steps.run(programs.writer, {groups(count, SURFEL_GROUP)},
                       count_uniforms(count) + share_uniforms(shown) +
-                          gl::Uniforms{{"emitting_count", counts.emitters}, {"mean_record", counts.surfels}});
+                          gl::Uniforms{{"emitting_count", counts.emitters},
+                                       {"balanced", lit.balanced},
+                                       {"mean_record", counts.surfels}});
         });
         return out;
     });
