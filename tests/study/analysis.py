@@ -20,15 +20,6 @@ def slope(xs: Sequence[float], ys: Sequence[float]) -> float:
     return sum((a - mean_u) * (b - mean_v) for a, b in zip(u, v)) / spread
 
 
-def slope_above(rows: Sequence[Row], floor: float) -> float | None:
-    """The slope of the indirect light's relMSE over the number of VPLs. Uses only points well above the reference's
-    noise, which is part of the measured error; up to a quarter of the error, it changes the slope by less than 10 %."""
-    clear = [row for row in rows if row["indirect_rel_mse"] > 4 * floor]
-    if len({row["vpls"] for row in clear}) < 3:
-        return None
-    return slope([row["vpls"] for row in clear], [row["indirect_rel_mse"] for row in clear])
-
-
 def select(rows: Iterable[Row], **wanted: Any) -> list[Row]:
     """The rows that were measured successfully and have these values."""
     return [row for row in rows if not row["failed"] and all(row[name] == value for name, value in wanted.items())]

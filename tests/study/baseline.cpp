@@ -35,6 +35,7 @@ struct Baseline {
 Baseline run_rounds(const reference::Scene& scene, Entity camera, const Reference& reference,
                     std::uint32_t samples, std::uint32_t rounds) {
     const reference::Estimate& truth = reference.estimate;
+    const Halves total = halves_of_total(truth);
     Baseline baseline;
     for (std::uint32_t round = 0; round < rounds; ++round) {
         // Seeds differ from the reference's, so that errors are independent of those of the reference.
@@ -44,8 +45,8 @@ Baseline run_rounds(const reference::Scene& scene, Entity camera, const Referenc
                                          .bounces = reference.request.bounces,
                                          .seed = reference.request.seed + 1 + round});
         baseline.ms.push_back(now.ms);
-        baseline.indirect.push_back(measure(now.indirect, truth.indirect, truth.hit));
-        baseline.total.push_back(measure(now.total, reference::total(truth), truth.hit));
+        baseline.indirect.push_back(measure(now.indirect, truth.halves, truth.hit));
+        baseline.total.push_back(measure(now.total, total, truth.hit));
     }
     return baseline;
 }

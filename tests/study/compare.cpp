@@ -77,7 +77,7 @@ struct Target {
 Halves light_of(reference::Estimate estimate, std::string_view light) {
     if (light == "direct") return {estimate.direct, estimate.direct};
     if (light == "indirect") return std::move(estimate.halves);
-    return {sum(estimate.direct, estimate.halves[0]), sum(estimate.direct, estimate.halves[1])};
+    return halves_of_total(estimate);
 }
 
 Target read_target(const Comparison& comparison, glm::ivec2 size) {

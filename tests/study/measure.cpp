@@ -65,15 +65,15 @@ struct Truth {
 
 Truth truth_of(Reference reference) {
     reference::Estimate& estimate = reference.estimate;
+    Halves total = halves_of_total(estimate);
     Truth truth{.direct = std::move(estimate.direct),
                 .direct_fine = std::move(reference.direct_fine),
                 .indirect = std::move(estimate.halves),
-                .total = {},
+                .total = std::move(total),
                 .shown = {},
                 .hit = std::move(estimate.hit),
                 .off_edges = {},
                 .emission = false};
-    truth.total = {sum(truth.direct, truth.indirect[0]), sum(truth.direct, truth.indirect[1])};
     truth.shown = mean_of(truth.total);
     truth.off_edges = truth.hit;
     for (std::size_t i = 0; i < truth.off_edges.size(); ++i) {

@@ -130,13 +130,16 @@ Picture read_sized(const fs::path& file, glm::uvec2 size) {
 
 }  // namespace
 
+Halves halves_of_total(const reference::Estimate& estimate) {
+    return {sum(estimate.direct, estimate.halves[0]), sum(estimate.direct, estimate.halves[1])};
+}
+
 Noise noise(const reference::Estimate& estimate) {
     // Halves of variance v have a mean squared difference of 2v; their mean has a variance of v/2.
-    const auto of_mean = [&](const Picture& a, const Picture& b) {
-        return measure(a, b, estimate.hit).rel_mse / 4.0;
+    const auto of_mean = [&](const Halves& halves) {
+        return measure(halves[0], halves[1], estimate.hit).rel_mse / 4.0;
     };
-    const auto& [a, b] = estimate.halves;
-    return {.indirect = of_mean(a, b), .total = of_mean(sum(estimate.direct, a), sum(estimate.direct, b))};
+    return {.indirect = of_mean(estimate.halves), .total = of_mean(halves_of_total(estimate))};
 }
 
 bool holds(const fs::path& folder, const Request& request) {

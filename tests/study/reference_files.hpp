@@ -9,6 +9,7 @@
 
 #include "renderer/tools/reference/path_tracer.hpp"
 #include "tests/study/json_line.hpp"
+#include "tests/study/measures.hpp"
 
 namespace candela::study {
 
@@ -34,6 +35,9 @@ struct Reference {
     reference::Estimate estimate;
     tools::Picture direct_fine;  ///< direct light: the mean over the pixel instead of its centre
 };
+
+/// All light, as the halves of the indirect light have it.
+[[nodiscard]] Halves halves_of_total(const reference::Estimate& estimate);
 
 /// The relMSE of the mean of the halves, estimated from their difference.
 struct Noise {

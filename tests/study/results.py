@@ -145,7 +145,6 @@ def write_results(study: Study, groups: list[Group], rows: list[Row], extra: dic
         "machine": study.machine,
         "gl_renderer": sorted(renderers),
         **machine.provenance(STUDY),
-        "tracer_sources": study.tracer,
         **extra,
         "groups": [describe(group) for group in groups],
         "columns": names,
