@@ -53,10 +53,7 @@ double relative_mean(const Picture& a, const Picture& p, const Picture& q,
                      std::span<const std::uint8_t> hit) {
     const double mean_square = square(0.5 * (mean_vector(p, hit) + mean_vector(q, hit)));
     return mean_over(a.pixels.size(), hit, [&](std::size_t i) {
-        const glm::dvec3 from_p = glm::dvec3(a.pixels[i]) - glm::dvec3(p.pixels[i]);
-        const glm::dvec3 from_q = glm::dvec3(a.pixels[i]) - glm::dvec3(q.pixels[i]);
-        const glm::dvec3 r = 0.5 * (glm::dvec3(p.pixels[i]) + glm::dvec3(q.pixels[i]));
-        return ratio(glm::dot(from_p, from_q), square(r) + floor_of_square * mean_square);
+        return relative_product(a.pixels[i], p.pixels[i], q.pixels[i], mean_square);
     });
 }
 
@@ -142,7 +139,11 @@ double square(glm::dvec3 vector) {
 }
 
 double relative_square(glm::dvec3 a, glm::dvec3 r, double mean_square) {
-    return ratio(square(a - r), square(r) + floor_of_square * mean_square);
+    return relative_product(a, r, r, mean_square);
+}
+
+double relative_product(glm::dvec3 a, glm::dvec3 p, glm::dvec3 q, double mean_square) {
+    return ratio(glm::dot(a - p, a - q), square(0.5 * (p + q)) + floor_of_square * mean_square);
 }
 
 glm::dvec3 mean_vector(const Picture& picture, std::span<const std::uint8_t> hit) {

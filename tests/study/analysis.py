@@ -38,7 +38,7 @@ def flicker_table(played: Sequence[Row]) -> list[Row]:
         if not {"fresh", "fixed", "surfels"} <= found.keys():
             continue
         flicker = {name: row["indirect_flicker"] for name, row in found.items()}
-        line = {"script": script, "noise": found["fixed"]["flicker_noise"], **flicker}
+        line = {"script": script, **flicker}
         for name in ("fresh", "fixed"):
             line[f"surfels_to_{name}"] = flicker["surfels"] / max(flicker[name], 1e-30)
         line["excess_frames"] = excess_frames(found["surfels"], found["fixed"])
@@ -73,7 +73,6 @@ def world_motion_table(played: Sequence[Row]) -> list[Row]:
         # Within a budget, direct light has fewer pixels, too, and indirect light is not the difference.
         if row["id"] != "budget":
             line["flicker_to_own"] = row["indirect_flicker"] / row["own_flicker"]
-            line["noise_to_own"] = row["flicker_noise"] / row["own_flicker"]
             line["worst_flicker"] = max(row["flicker_of_pairs"])
             line["rel_mse"] = statistics.mean(row["indirect_rel_mse"])
         if row["scene"] in AT_REST:

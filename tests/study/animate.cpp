@@ -38,10 +38,8 @@ Play load_play(const AnimateStudy& study) {
 
 /// The references of all frames, as separate lists for `flicker`.
 struct TrueFrames {
-    std::vector<Picture> direct;
-    std::vector<Picture> indirect;
-    std::vector<Picture> total;
-    std::vector<Picture> halves[2];
+    std::vector<Halves> indirect;
+    std::vector<Halves> total;
     std::vector<Mask> hits;
 };
 
@@ -62,11 +60,8 @@ Reference reference_of(const Play& play, const std::string& hash, const AnimateS
 }
 
 void add(TrueFrames& truth, const reference::Estimate& estimate) {
-    truth.direct.push_back(estimate.direct);
-    truth.indirect.push_back(estimate.indirect);
-    truth.total.push_back(reference::total(estimate));
-    truth.halves[0].push_back(estimate.halves[0]);
-    truth.halves[1].push_back(estimate.halves[1]);
+    truth.indirect.push_back(estimate.halves);
+    truth.total.push_back(halves_of_total(estimate));
     truth.hits.push_back(estimate.hit);
 }
 
@@ -129,20 +124,17 @@ Json frame_line(const Point& point, int frame, double ms, const Report& report, 
 
 /// The flicker of a picture that does not change: the size of the reference's own changes.
 double own_flicker(const TrueFrames& truth) {
-    const std::vector<Picture> still(truth.indirect.size(), truth.indirect.front());
+    const std::vector<Picture> still(truth.indirect.size(), truth.indirect.front().front());
     return flicker(still, truth.indirect, truth.hits);
 }
 
-/// `noise` is the part of the indirect light's flicker that is due to noise of the reference: halves of
-/// variance v have a mean squared difference of 2v, and their mean has a variance of v/2.
 Json flicker_line(const Point& point, const Take& take, const TrueFrames& truth) {
     return {{"id", point.id},
             {"kind", "flicker"},
             {"indirect", flicker(take.indirect, truth.indirect, truth.hits)},
             {"total", flicker(take.total, truth.total, truth.hits)},
             {"own", own_flicker(truth)},
-            {"indirect_pairs", flicker_of_pairs(take.indirect, truth.indirect, truth.hits)},
-            {"noise", flicker(truth.halves[0], truth.halves[1], truth.hits) / 4.0}};
+            {"indirect_pairs", flicker_of_pairs(take.indirect, truth.indirect, truth.hits)}};
 }
 
 Json play_point(const gl::GetProc& get_proc, Play& play, const TrueFrames& truth, const AnimateStudy& study,

@@ -80,20 +80,22 @@ def gather(rows: Sequence[Row], tracer: Sequence[Row], out: pathlib.Path) -> Non
 
 
 def surfels(rows: Sequence[Row], out: pathlib.Path) -> None:
-    """The error of the indirect light and the time of gathering it over the number of surfels."""
+    """Errors, measured and seen, and the time of gathering over the number of surfels."""
     names = scenes_of(rows, "surfels")
     if not names:
         return
-    figure, (error, time) = plt.subplots(1, 2, figsize=(10, 4.2))
+    figure, (error, seen, time) = plt.subplots(1, 3, figsize=(13, 4.2))
     for scene, (colour, marker) in zip(names, SERIES):
         chosen = sorted(select(rows, suite="surfels", scene=scene), key=lambda row: row["vpls"])
         counts, style = [row["vpls"] for row in chosen], {"color": colour, "marker": marker, "markersize": 5}
         error.plot(counts, [row["indirect_rel_mse"] for row in chosen], label=scene, **style)
-        error.axhline(chosen[0]["reference_noise"], color=colour, linestyle=":", linewidth=1)
+        error.plot(counts, [row["indirect_blotch"] for row in chosen], linestyle="--", **style)
+        seen.plot(counts, [row["flip"] for row in chosen], **style)
         time.plot(counts, [row["gather_ms"] for row in chosen], **style)
-    error.set(ylabel="relMSE of the indirect light\n(dotted: the reference's own noise)")
+    error.set(ylabel="relMSE of the indirect light; dashed: blotch")
+    seen.set(ylabel="FLIP of all light")
     time.set(ylabel="gathering after a camera move, ms")
-    for axes in (error, time):
+    for axes in (error, seen, time):
         axes.set(xscale="log", yscale="log", xlabel="surfels", xticks=matrix.SURFEL_COUNTS)
         axes.set_xticklabels([f"{count:,}" for count in matrix.SURFEL_COUNTS])
         axes.minorticks_off()

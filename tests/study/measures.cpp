@@ -52,7 +52,7 @@ Mask both(std::span<const std::uint8_t> a, std::span<const std::uint8_t> b) {
     return mask;
 }
 
-void require_sequences(std::span<const Picture> frames, std::span<const Picture> reference_frames,
+void require_sequences(std::span<const Picture> frames, std::span<const Halves> reference_frames,
                        std::span<const Mask> hits) {
     if (frames.size() < 2 || frames.size() != reference_frames.size() ||
         (!hits.empty() && hits.size() != frames.size())) {
@@ -62,7 +62,7 @@ void require_sequences(std::span<const Picture> frames, std::span<const Picture>
             frames.size(), reference_frames.size(), hits.size()));
     }
     for (std::size_t i = 0; i < frames.size(); ++i) {
-        require_comparable(frames[i], reference_frames[i], mask_of(hits, i));
+        for (const Picture& half : reference_frames[i]) require_comparable(frames[i], half, mask_of(hits, i));
         require_comparable(frames[i], frames[0], {});
     }
 }
@@ -111,28 +111,31 @@ std::vector<double> relative_errors(const Picture& picture, const Picture& refer
 }
 
 std::vector<double> flicker_of_pairs(std::span<const Picture> frames,
-                                     std::span<const Picture> reference_frames, std::span<const Mask> hits) {
+                                     std::span<const Halves> reference_frames, std::span<const Mask> hits) {
     require_sequences(frames, reference_frames, hits);
     const auto count = static_cast<double>(frames.size());
     glm::dvec3 mean(0.0);
     for (std::size_t i = 0; i < frames.size(); ++i) {
-        mean += mean_vector(reference_frames[i], mask_of(hits, i)) / count;
+        mean += mean_vector(mean_of(reference_frames[i]), mask_of(hits, i)) / count;
     }
     std::vector<double> pairs;
     pairs.reserve(frames.size() - 1);
     for (std::size_t next = 1; next < frames.size(); ++next) {
-        const auto change = [next](std::span<const Picture> sequence, std::size_t pixel) {
-            return glm::dvec3(sequence[next].pixels[pixel]) - glm::dvec3(sequence[next - 1].pixels[pixel]);
-        };
         const Mask hit = both(mask_of(hits, next - 1), mask_of(hits, next));
+        const Halves& before = reference_frames[next - 1];
+        const Halves& now = reference_frames[next];
         pairs.push_back(mean_over(frames[next].pixels.size(), hit, [&](std::size_t i) {
-            return relative_square(change(frames, i), change(reference_frames, i), square(mean));
+            const auto change = [i](const Picture& a, const Picture& b) {
+                return glm::dvec3(b.pixels[i]) - glm::dvec3(a.pixels[i]);
+            };
+            return tools::relative_product(change(frames[next - 1], frames[next]), change(before[0], now[0]),
+                                           change(before[1], now[1]), square(mean));
         }));
     }
     return pairs;
 }
 
-double flicker(std::span<const Picture> frames, std::span<const Picture> reference_frames,
+double flicker(std::span<const Picture> frames, std::span<const Halves> reference_frames,
                std::span<const Mask> hits) {
     const std::vector<double> pairs = flicker_of_pairs(frames, reference_frames, hits);
     return std::accumulate(pairs.begin(), pairs.end(), 0.0) / static_cast<double>(pairs.size());

@@ -44,17 +44,17 @@ struct Errors {
                                                   std::span<const std::uint8_t> hit = {});
 
 /// The error of the change from frame to frame, for each pair of consecutive frames: the relMSE between the
-/// difference of the frames and that of the reference, mean(|Δa - Δr|² / (|Δr|² + 0.01 |m|²)) over the pixels
-/// that count in both frames. m is the mean vector of all frames of the reference, not of their differences,
-/// so that flicker is also defined for a still reference. `hits` contains one mask per frame, or is empty for
-/// all pixels. Throws as `measure` does, and if there are fewer than two frames.
+/// difference of the frames and that of the reference, mean((Δa - Δp) · (Δa - Δq) / (|Δr|² + 0.01 |m|²)) over
+/// the pixels that count in both frames, with the halves p and q of the reference r. m is the mean vector of
+/// all frames of the reference, not of their differences, so that flicker is also defined for a still
+/// reference. `hits` contains one mask per frame, or is empty for all pixels. Throws as `measure` does, and
+/// if there are fewer than two frames.
 [[nodiscard]] std::vector<double> flicker_of_pairs(std::span<const tools::Picture> frames,
-                                                   std::span<const tools::Picture> reference_frames,
+                                                   std::span<const Halves> reference_frames,
                                                    std::span<const Mask> hits = {});
 
 /// The mean of `flicker_of_pairs`.
-[[nodiscard]] double flicker(std::span<const tools::Picture> frames,
-                             std::span<const tools::Picture> reference_frames,
+[[nodiscard]] double flicker(std::span<const tools::Picture> frames, std::span<const Halves> reference_frames,
                              std::span<const Mask> hits = {});
 
 /// The relMSE of the means of blocks of 6 × 6 pixels, taken over the pixels in `hit`. A block counts if half

@@ -240,6 +240,18 @@ TEST_CASE("pictures that cannot be compared are refused") {
 }  // TEST_SUITE("measures")
 
 TEST_SUITE("flicker") {
+
+namespace {
+
+/// Frames without noise.
+std::vector<Halves> exact(const std::vector<Picture>& frames) {
+    std::vector<Halves> halves;
+    for (const Picture& frame : frames) halves.push_back({frame, frame});
+    return halves;
+}
+
+}  // namespace
+
 TEST_CASE("a constant error does not flicker, whatever moves") {
     // Sums of quarters, which floats hold exactly.
     std::vector<Picture> frames;
@@ -248,7 +260,7 @@ TEST_CASE("a constant error does not flicker, whatever moves") {
         reference.push_back(row({glm::vec3(light), glm::vec3(2.0F * light)}));
         frames.push_back(row({glm::vec3(light + 0.5F), glm::vec3(2.0F * light - 0.25F)}));
     }
-    CHECK(flicker(frames, reference) == 0.0);
+    CHECK(flicker(frames, exact(reference)) == 0.0);
     CHECK(measure(frames[0], reference[0]).rel_mse > 0.01);
 }
 
@@ -259,7 +271,7 @@ TEST_CASE("an error that changes its sign from frame to frame flickers by twice 
     for (const float error : {0.125F, -0.125F, 0.125F, -0.125F, 0.125F}) {
         frames.push_back(constant({3, 3}, glm::vec3(2.0F + error)));
     }
-    CHECK(flicker(frames, reference) == about(0.25 * 0.25 / (0.01 * 4.0)));
+    CHECK(flicker(frames, exact(reference)) == about(0.25 * 0.25 / (0.01 * 4.0)));
 }
 
 TEST_CASE("each pair of frames has its own flicker, and the flicker of all is their mean") {
@@ -267,11 +279,11 @@ TEST_CASE("each pair of frames has its own flicker, and the flicker of all is th
     const std::vector<Picture> reference(3, constant({2, 2}, glm::vec3(2.0F)));
     const std::vector<Picture> frames{constant({2, 2}, glm::vec3(2.0F)), constant({2, 2}, glm::vec3(3.0F)),
                                       constant({2, 2}, glm::vec3(3.0F))};
-    const std::vector<double> pairs = flicker_of_pairs(frames, reference);
+    const std::vector<double> pairs = flicker_of_pairs(frames, exact(reference));
     REQUIRE(pairs.size() == 2);
     CHECK(pairs[0] == about(1.0 / 0.04));
     CHECK(pairs[1] == 0.0);
-    CHECK(flicker(frames, reference) == about(0.5 / 0.04));
+    CHECK(flicker(frames, exact(reference)) == about(0.5 / 0.04));
 }
 
 TEST_CASE("flicker is relative to the changes of the reference") {
@@ -279,10 +291,29 @@ TEST_CASE("flicker is relative to the changes of the reference") {
     const std::vector<Picture> reference{constant({2, 2}, glm::vec3(1.0F)),
                                          constant({2, 2}, glm::vec3(3.0F))};
     const std::vector<Picture> frames{constant({2, 2}, glm::vec3(1.0F)), constant({2, 2}, glm::vec3(2.0F))};
-    CHECK(flicker(frames, reference) == about(1.0 / 4.04));
+    CHECK(flicker(frames, exact(reference)) == about(1.0 / 4.04));
     // A picture that does not move lacks all of the change.
     const std::vector<Picture> still(2, constant({2, 2}, glm::vec3(7.0F)));
-    CHECK(flicker(still, reference) == about(4.0 / 4.04));
+    CHECK(flicker(still, exact(reference)) == about(4.0 / 4.04));
+}
+
+TEST_CASE("noise of the reference does not flicker") {
+    // A still picture before a still reference, whose halves have noise of a variance of 0.05² / 12.
+    const glm::ivec2 size{240, 160};
+    const std::vector<Picture> still(2, constant(size, glm::vec3(2.5F)));
+    std::vector<Halves> reference;
+    for (const std::uint32_t seed : {1U, 3U}) {
+        Halves& halves = reference.emplace_back(Halves{noise(size, seed), noise(size, seed + 1)});
+        for (Picture& half : halves) {
+            for (glm::vec3& pixel : half.pixels) pixel = 2.475F + 0.05F * pixel;
+        }
+    }
+    // Products of differences of noise have a standard deviation of 2 · 0.05² / 12 = 0.00042 in a channel,
+    // their mean over 240 · 160 · 3 one of 0.0000012: four of them, relative to 0.01 · 2.5².
+    CHECK(std::abs(flicker(still, reference)) < 4.0 * 0.0000012 / 0.0625);
+    // One half alone has all of its noise: 2 · 0.05² / 12.
+    CHECK(flicker(still, exact({reference[0][0], reference[1][0]})) ==
+          doctest::Approx(0.00042 / 0.0625).epsilon(0.0003));
 }
 
 TEST_CASE("only pixels that count in both frames are compared") {
@@ -290,23 +321,23 @@ TEST_CASE("only pixels that count in both frames are compared") {
     const std::vector<Picture> frames{reference[0],
                                       row({glm::vec3(1.5F), glm::vec3(9.0F), glm::vec3(-9.0F)})};
     const std::vector<Mask> hits{{1, 1, 0}, {1, 0, 1}};
-    CHECK(flicker(frames, reference, hits) == about(0.25 / 0.01));
+    CHECK(flicker(frames, exact(reference), hits) == about(0.25 / 0.01));
     const std::vector<Mask> apart{{1, 0, 0}, {0, 1, 1}};
-    CHECK_THROWS_WITH_AS((void)flicker(frames, reference, apart), "no pixel counts in two consecutive frames",
-                         std::invalid_argument);
+    CHECK_THROWS_WITH_AS((void)flicker(frames, exact(reference), apart),
+                         "no pixel counts in two consecutive frames", std::invalid_argument);
 }
 
 TEST_CASE("sequences that do not fit are refused") {
     const std::vector<Picture> two(2, constant({2, 2}, glm::vec3(1.0F)));
     const std::vector<Picture> one(1, two[0]);
     const std::vector<Mask> mask(1, Mask(4, 1));
-    CHECK_THROWS_AS((void)flicker(one, one), std::invalid_argument);
-    CHECK_THROWS_AS((void)flicker(two, one), std::invalid_argument);
-    CHECK_THROWS_AS((void)flicker(two, two, mask), std::invalid_argument);
+    CHECK_THROWS_AS((void)flicker(one, exact(one)), std::invalid_argument);
+    CHECK_THROWS_AS((void)flicker(two, exact(one)), std::invalid_argument);
+    CHECK_THROWS_AS((void)flicker(two, exact(two), mask), std::invalid_argument);
     std::vector<Picture> grown = two;
     grown[1] = constant({3, 2}, glm::vec3(1.0F));
-    CHECK_THROWS_AS((void)flicker(two, grown), tools::ToolError);
-    CHECK_THROWS_AS((void)flicker(grown, grown), tools::ToolError);
+    CHECK_THROWS_AS((void)flicker(two, exact(grown)), tools::ToolError);
+    CHECK_THROWS_AS((void)flicker(grown, exact(grown)), tools::ToolError);
 }
 
 }  // TEST_SUITE("flicker")

@@ -28,7 +28,6 @@ def scripts_panels(error: Axes, flicker: Axes, rows: Sequence[Row]) -> None:
         error.plot(row["indirect_rel_mse"], color=colour, linewidth=1.3, label=label)
         pairs = [max(value, 1e-7) for value in row["flicker_of_pairs"]]
         flicker.plot(range(1, len(pairs) + 1), pairs, color=colour, linewidth=1.1)
-    flicker.axhline(rows[0]["flicker_noise"], color="#777777", linestyle=":", linewidth=1)
     error.set(yscale="log", title=rows[0]["scene"])
     flicker.set(yscale="log", xlabel="frame", ylim=(1e-7, None))
     for axes in (error, flicker):
@@ -45,7 +44,7 @@ def scripts(played: Sequence[Row], out: pathlib.Path) -> None:
     for column, name in enumerate(names):
         scripts_panels(grid[0][column], grid[1][column], select(rows, scene=name))
     grid[0][0].set_ylabel("relMSE of the indirect light")
-    grid[1][0].set_ylabel("flicker since the previous frame\n(dotted: the reference's own noise)")
+    grid[1][0].set_ylabel("flicker since the previous frame")
     charts.legend_below(figure, grid[0][0], 3)
     charts.save(figure, out, "motion")
 
@@ -63,11 +62,10 @@ def worlds(played: Sequence[Row], out: pathlib.Path) -> None:
             axes.set(yscale="log")
             axes.minorticks_off()
         column[0].set(yscale="linear", ylim=(0, None), title=row["scene"])
-        column[2].axhline(row["flicker_noise"], color="#777777", linestyle=":", linewidth=1)
         column[2].set_xlabel("frame")
     grid[0][0].set_ylabel("time of the frame / median")
     grid[1][0].set_ylabel("relMSE of the indirect light")
-    grid[2][0].set_ylabel("flicker since the previous frame\n(dotted: the reference's own noise)")
+    grid[2][0].set_ylabel("flicker since the previous frame")
     figure.tight_layout()
     charts.save(figure, out, "worlds")
 

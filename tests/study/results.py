@@ -94,7 +94,7 @@ def motion_row(motion: Motion, take: Take, record: journal.Record | None) -> Row
     for part in ("indirect", "total"):
         row[f"{part}_flicker"] = line["flicker"][part]
         row[f"{part}_rel_mse"] = [frame["errors"][part]["rel_mse"] for frame in line["frames"]]
-    row.update({"flicker_noise": line["flicker"]["noise"], "flicker_of_pairs": line["flicker"]["indirect_pairs"]})
+    row["flicker_of_pairs"] = line["flicker"]["indirect_pairs"]
     row["own_flicker"] = line["flicker"]["own"]
     return {**row, **{name: [frame[name] for frame in line["frames"]] for name in FRAME_FIGURES}}
 

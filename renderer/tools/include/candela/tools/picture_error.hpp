@@ -79,6 +79,9 @@ CANDELA_API void require_comparable(const Picture& picture, const Picture& refer
 /// The squared relative error of a pixel, or of a pixel's change: |a - r|² / (|r|² + 0.01 |m|²), where
 /// `mean_square` is |m|².
 [[nodiscard]] CANDELA_API double relative_square(glm::dvec3 a, glm::dvec3 r, double mean_square);
+/// The same against the halves p and q of r: (a - p) · (a - q) / (|r|² + 0.01 |m|²).
+[[nodiscard]] CANDELA_API double relative_product(glm::dvec3 a, glm::dvec3 p, glm::dvec3 q,
+                                                  double mean_square);
 
 /// The mean of `value(pixel)` over the pixels that count.
 template <typename Value>
