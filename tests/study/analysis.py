@@ -62,9 +62,8 @@ def scene_table(rows: Sequence[Row]) -> list[Row]:
 
 
 def world_motion_table(played: Sequence[Row]) -> list[Row]:
-    """For each script: the slowest frame after the first, the flicker of the indirect light as a multiple of that of a
-    picture that does not change, its flicker in the worst pair of frames, its error, and how fast that of all light
-    settles."""
+    """For each script: the slowest frame after the first, the flicker of the indirect light, also in the worst pair of
+    frames, its error, and how fast that of all light settles."""
     table = []
     for row in select(played, suite="worlds"):
         times = row["full_ms"][1:]
@@ -72,7 +71,7 @@ def world_motion_table(played: Sequence[Row]) -> list[Row]:
         line["worst_to_median"] = max(times) / statistics.median(times)
         # Within a budget, direct light has fewer pixels, too, and indirect light is not the difference.
         if row["id"] != "budget":
-            line["flicker_to_own"] = row["indirect_flicker"] / row["own_flicker"]
+            line["flicker"] = row["indirect_flicker"]
             line["worst_flicker"] = max(row["flicker_of_pairs"])
             line["rel_mse"] = statistics.mean(row["indirect_rel_mse"])
         if row["scene"] in AT_REST:

@@ -122,18 +122,11 @@ Json frame_line(const Point& point, int frame, double ms, const Report& report, 
             {"refined", report.refined}};
 }
 
-/// The flicker of a picture that does not change: the size of the reference's own changes.
-double own_flicker(const TrueFrames& truth) {
-    const std::vector<Picture> still(truth.indirect.size(), truth.indirect.front().front());
-    return flicker(still, truth.indirect, truth.hits);
-}
-
 Json flicker_line(const Point& point, const Take& take, const TrueFrames& truth) {
     return {{"id", point.id},
             {"kind", "flicker"},
             {"indirect", flicker(take.indirect, truth.indirect, truth.hits)},
             {"total", flicker(take.total, truth.total, truth.hits)},
-            {"own", own_flicker(truth)},
             {"indirect_pairs", flicker_of_pairs(take.indirect, truth.indirect, truth.hits)}};
 }
 

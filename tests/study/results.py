@@ -95,7 +95,6 @@ def motion_row(motion: Motion, take: Take, record: journal.Record | None) -> Row
         row[f"{part}_flicker"] = line["flicker"][part]
         row[f"{part}_rel_mse"] = [frame["errors"][part]["rel_mse"] for frame in line["frames"]]
     row["flicker_of_pairs"] = line["flicker"]["indirect_pairs"]
-    row["own_flicker"] = line["flicker"]["own"]
     return {**row, **{name: [frame[name] for frame in line["frames"]] for name in FRAME_FIGURES}}
 
 
