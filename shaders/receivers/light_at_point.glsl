@@ -49,7 +49,7 @@ vec3 irradiance_from_lights(uint first, uint end, Surface surface) {
 
 #ifdef VPLS
 
-// Of every VPL, or group of surfels, of that stride from `first` on, before `end`.
+// Of every stride-th VPL from `first` on, before `end`.
 vec3 irradiance_from_vpls(uint first, uint end, uint stride, Surface surface) {
     Surface surfaces[SURFACES];
     Gathered gathered[SURFACES];
