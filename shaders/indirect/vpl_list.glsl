@@ -1,4 +1,5 @@
-// A part of a list of VPLs, which is the VPLs' buffer or, with VPL_ORDER, vpl_order.
+// A part of a list of VPLs. The list is the VPLs' buffer or, with VPL_ORDER, vpl_order.
+#include "bindings.glsl"
 
 #ifdef VPL_ORDER
 layout(std430, binding = BINDING_VPL_ORDER) readonly restrict buffer VplOrder { uint vpl_order[]; };

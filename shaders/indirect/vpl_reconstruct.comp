@@ -125,7 +125,7 @@ vec4 mean_irradiance(Sum sum) {
     return vec4(sum.irradiance.rgb / max(sum.irradiance.a, 1e-6), sum.irradiance.a / float(interleave));
 }
 
-// Of columns. One bit a pixel, 32 a word: 1 if vpl_fill.comp is to gather VPLs for it.
+// Only the step along columns writes it. One bit a pixel, 32 a word: 1 if vpl_fill.comp is to gather VPLs for the pixel.
 layout(std430, binding = BINDING_FILL_MASK) writeonly restrict buffer Mask { uint fill_mask[]; };
 
 const float ENOUGH = 0.6;  // share of the classes; with less, vpl_fill.comp gathers VPLs for the pixel

@@ -125,7 +125,8 @@ def slopes_in_band(rows: Sequence[Row]) -> Iterator[Check]:
     for bound in (matrix.DEFAULT_BOUND, matrix.UNBOUNDED) if "plates" in names(rows) else ():
         chosen = series(rows, "plates", bound)
         errors = [(row["vpls"], row["indirect_rel_mse"]) for row in chosen]
-        found = analysis.slope(*zip(*errors)) if len(errors) > 2 else math.nan
+        measured = len(errors) > 2 and all(error > 0 for _, error in errors)
+        found = analysis.slope(*zip(*errors)) if measured else math.nan
         holds = SLOPES[0] <= found <= SLOPES[1]
         yield f"plates, bound {bound}: the slope is from {SLOPES[0]} to {SLOPES[1]}", holds, str(found)
 

@@ -66,15 +66,15 @@ struct Truth {
 Truth truth_of(Reference reference) {
     reference::Estimate& estimate = reference.estimate;
     Halves total = halves_of_total(estimate);
+    Picture shown = reference::total(estimate);
     Truth truth{.direct = std::move(estimate.direct),
                 .direct_fine = std::move(reference.direct_fine),
                 .indirect = std::move(estimate.halves),
                 .total = std::move(total),
-                .shown = {},
+                .shown = std::move(shown),
                 .hit = std::move(estimate.hit),
                 .off_edges = {},
                 .emission = false};
-    truth.shown = mean_of(truth.total);
     truth.off_edges = truth.hit;
     for (std::size_t i = 0; i < truth.off_edges.size(); ++i) {
         truth.off_edges[i] = estimate.edge[i] != 0 ? 0 : truth.off_edges[i];

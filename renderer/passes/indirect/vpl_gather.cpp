@@ -48,7 +48,8 @@ std::uint32_t interleaving(Interleave interleave, std::uint32_t vpl_count, glm::
 namespace {
 
 /// The order of surfels and patches of the sky. Surfels lie in the buffer surface by surface. In this order
-/// each share contains surfels of all surfaces.
+/// each share contains surfels of all surfaces, and kinds of VPLs follow one another, as add_vpls of
+/// vpl_light.glsl has a loop for each.
 std::vector<std::uint32_t> order_surfels(std::uint32_t count) {
     constexpr std::uint32_t most_shares = 64;
     std::vector<std::uint32_t> order;

@@ -20,8 +20,7 @@ struct VplLight {
     std::optional<Tracing> rays{};  ///< BVH for shadow rays: of all VPLs, or of those without a map
 };
 
-/// Iterations of loops that a VPL takes at most in vpl_light.glsl, in the mean of the
-/// kinds: see loop_parts.
+/// Iterations of loops that a VPL takes at most in vpl_light.glsl, in the mean of the kinds: see loop_parts.
 [[nodiscard]] std::uint32_t iterations_a_vpl(const VplLight& light, const VplCounts& counts);
 /// Most of them that an invocation can sum in one dispatch or draw, if few are surfels that emit light.
 [[nodiscard]] std::uint32_t vpls_a_loop(const gl::Limits& limits, const VplLight& light);
